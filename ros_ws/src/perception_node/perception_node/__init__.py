@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From image to scene graph: masks, visual module G, poses, relations, confidence."""
