@@ -19,6 +19,4 @@ class Move:
 
 def all_moves(stack_count: int) -> tuple[Move, ...]:
     """The fixed action set A^v of 5.2.2 for m stacks: every (p, q) with p ≠ q."""
-    return tuple(
-        Move(p, q) for p in range(stack_count) for q in range(stack_count) if p != q
-    )
+    return tuple(Move(p, q) for p in range(stack_count) for q in range(stack_count) if p != q)

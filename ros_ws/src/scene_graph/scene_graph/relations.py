@@ -22,7 +22,9 @@ class Relation:
 
     def __post_init__(self) -> None:
         if self.predicate not in PREDICATES:
-            raise ValueError(f"unknown predicate {self.predicate!r}; known: {', '.join(PREDICATES)}")
+            raise ValueError(
+                f"unknown predicate {self.predicate!r}; known: {', '.join(PREDICATES)}"
+            )
 
     def __str__(self) -> str:
         return f"{self.subject} {self.predicate} {self.object}"

@@ -98,7 +98,8 @@ def apply_move(stacks: Stacks, move: Move) -> Stacks:
     if not (0 <= source < len(stacks) and 0 <= target < len(stacks)):
         raise ImpossibleMoveError(
             f"move {move} names a stack that is not among stack0 to stack{len(stacks) - 1}",
-            source, target,
+            source,
+            target,
         )
     if source == target:
         raise ImpossibleMoveError(f"move {move} ends where it starts", source, target)

@@ -6,13 +6,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
-from scene_graph import Base, Move, Relation, SceneGraph, SceneObject, Stacks
 from std_msgs.msg import Header
 from tamp_interfaces.msg import Base as BaseMsg
 from tamp_interfaces.msg import Move as MoveMsg
 from tamp_interfaces.msg import Relation as RelationMsg
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_interfaces.msg import SceneObject as SceneObjectMsg
+
+from scene_graph import Base, Move, Relation, SceneGraph, SceneObject, Stacks
 
 
 def object_to_message(item: SceneObject) -> SceneObjectMsg:
