@@ -17,7 +17,8 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            # executables, where ros2 run finds them
+            "sim_node = sim_node.node:main",
+            "render_dataset = sim_node.render_dataset:main",
         ]
     },
 )

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterable
 from typing import Final
@@ -42,7 +43,7 @@ def up_relations(stacks: Stacks) -> frozenset[Relation]:
 def left_relations(stacks: Stacks) -> frozenset[Relation]:
     """Left-relations between the bottom objects of neighbouring non-empty stacks (5.2.1)."""
     bottoms = [stack[0] for stack in stacks if stack]
-    return frozenset(Relation(a, LEFT, b) for a, b in zip(bottoms, bottoms[1:]))
+    return frozenset(Relation(a, LEFT, b) for a, b in itertools.pairwise(bottoms))
 
 
 def stacks_from_relations(relations: Iterable[Relation], stack_count: int) -> Stacks:

@@ -40,7 +40,7 @@ def check_layout(layout: Stacks, stack_count: int) -> None:
 
 
 def parse_layout(texts: Sequence[str], stack_count: int) -> Stacks:
-    """``["red_box,blue_box", "", "green_box"]``, from the left and the bottom; raises LayoutError."""
+    """Parses ``["red_box,blue_box", "", "green_box"]``; raises LayoutError."""
     layout = tuple(
         tuple(name.strip() for name in text.split(",")) if text.strip() else () for text in texts
     )
@@ -63,11 +63,20 @@ def random_layout(seed: int, blocks: int, stack_count: int = 3) -> Stacks:
         raise LayoutError(f"{blocks} blocks asked for; {MIN_BLOCKS} to {MAX_BLOCKS} are possible")
     rng = np.random.default_rng(seed)
     names = [object_name(color, BOX) for color in rng.permutation(list(COLORS))[:blocks]]
+    return random_arrangement(names, rng, stack_count)
+
+
+def random_arrangement(
+    names: Sequence[str], rng: np.random.Generator, stack_count: int = 3
+) -> Stacks:
+    """The named blocks in a random state, uniform over all their states."""
     # A state is an order of the blocks and m - 1 bars among them; both are drawn uniformly.
-    bars = np.sort(rng.permutation(blocks + stack_count - 1)[: stack_count - 1])
-    heights = np.diff(np.concatenate([[-1], bars, [blocks + stack_count - 1]])) - 1
+    order = [names[index] for index in rng.permutation(len(names))]
+    places = len(names) + stack_count - 1
+    bars = np.sort(rng.permutation(places)[: stack_count - 1])
+    heights = np.diff(np.concatenate([[-1], bars, [places]])) - 1
     ends = np.cumsum(heights)
-    return tuple(tuple(names[end - height : end]) for end, height in zip(ends, heights))
+    return tuple(tuple(order[end - height : end]) for end, height in zip(ends, heights))
 
 
 def all_layouts(names: Sequence[str], stack_count: int = 3) -> Iterator[Stacks]:

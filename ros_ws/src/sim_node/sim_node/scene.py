@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What stands where: table, places, blocks, camera. SI units, frame ``world`` = the robot's base."""
+"""What stands where: table, places, blocks, camera. The frame ``world`` is the robot's base."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from types import TracebackType
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import pybullet
@@ -118,7 +118,7 @@ class World:
                 offset = rng.uniform(-config.position_jitter, config.position_jitter, 2)
                 yaw = rng.uniform(-config.yaw_jitter, config.yaw_jitter)
                 height = (level + 0.5) * config.block_size + level * 1e-4
-                position = np.array(base) + [*offset, height]
+                position = np.add(base, [*offset, height])
                 self._bodies[name] = self._create_block(name, position, yaw)
         shuffled = rng.permutation(len(self._bodies)) + 1
         self._labels = {name: int(label) for name, label in zip(self._bodies, shuffled)}
@@ -216,8 +216,8 @@ class World:
         half = 0.5 * self.config.block_size
         if shape == CYLINDER:
             kind = pybullet.GEOM_CYLINDER
-            collision_size = {"radius": half, "height": 2.0 * half}
-            visual_size = {"radius": half, "length": 2.0 * half}
+            collision_size: dict[str, Any] = {"radius": half, "height": 2.0 * half}
+            visual_size: dict[str, Any] = {"radius": half, "length": 2.0 * half}
         elif shape == SPHERE:
             kind = pybullet.GEOM_SPHERE
             collision_size = visual_size = {"radius": half}

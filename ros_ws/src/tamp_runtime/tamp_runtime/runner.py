@@ -4,10 +4,8 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import rclpy
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
@@ -24,7 +22,7 @@ def keep_discovery_on_this_host() -> None:
 
 
 def run_node(
-    make_node: Callable[[], Node], args: Sequence[str] | None = None, threads: int = 4
+    make_node: Callable[[], Node], args: list[str] | None = None, threads: int = 4
 ) -> int:
     """Runs a node until SIGINT, SIGTERM or shutdown, and returns the process's exit code.
 
@@ -32,15 +30,9 @@ def run_node(
     parameters (ValueError or OSError from its constructor).
     """
     keep_discovery_on_this_host()
-    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+    # rclpy's own handlers of SIGINT and SIGTERM wake the executor; Python's wait for a message.
+    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.ALL)
     executor = MultiThreadedExecutor(num_threads=threads)
-
-    def stop(_signal: int, _frame: Any) -> None:
-        executor.wake()
-        rclpy.try_shutdown()
-
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, stop)
     node: Node | None = None
     try:
         node = make_node()

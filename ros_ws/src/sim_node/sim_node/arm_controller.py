@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Follows joint trajectories in simulated time, like ros2_control's joint_trajectory_controller."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .trajectory import JointLimits, Trajectory
+from .world import FINGER_JOINTS, HOME, JOINTS, World
+
+#: How far a trajectory's first point may be from the present state [rad; m for the fingers].
+#: Fingers that hold a block are away from their target by the squeeze.
+_START_TOLERANCE = np.array([0.1] * 7 + [0.05] * 2)
+
+
+class ArmController:
+    """Sends the sampled trajectory to the world's motors, one command a physics step."""
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self.limits = JointLimits(JOINTS, world.lower, world.upper, world.max_velocity)
+        self._trajectory: Trajectory | None = None
+        self._started = 0.0
+        self._hold = np.array(HOME)
+
+    @property
+    def moving(self) -> bool:
+        """Whether a trajectory is being followed."""
+        return self._trajectory is not None
+
+    def follow(
+        self,
+        names: Sequence[str],
+        times: NDArray[np.float64],
+        positions: NDArray[np.float64],
+        velocities: NDArray[np.float64] | None,
+    ) -> Trajectory:
+        """Starts a trajectory now, in place of the running one; see :class:`Trajectory`.
+
+        Raises:
+            TrajectoryError: if it is refused; the running one goes on.
+        """
+        start, _, _ = self._world.joint_state()
+        trajectory = Trajectory(
+            names, times, positions, velocities, self.limits, start, _START_TOLERANCE
+        )
+        self._trajectory, self._started = trajectory, self._world.time
+        return trajectory
+
+    def stop(self) -> None:
+        """Holds the present position of the arm; the fingers keep their target."""
+        positions, _, _ = self._world.joint_state()
+        fingers = [JOINTS.index(name) for name in FINGER_JOINTS]
+        positions[fingers] = self._target()[0][fingers]
+        self._trajectory, self._hold = None, positions
+
+    def reset(self) -> None:
+        """Forgets the trajectory and holds home, where the world's reset has put the arm."""
+        self._trajectory, self._hold = None, np.array(HOME)
+
+    def update(self) -> None:
+        """Commands the motors for the next physics step."""
+        self._world.command(*self._target())
+        if self._trajectory and self._world.time - self._started > self._trajectory.duration:
+            self._hold = self._trajectory.sample(np.inf)[0]
+            self._trajectory = None
+
+    def _target(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        if self._trajectory is None:
+            return self._hold, np.zeros_like(self._hold)
+        return self._trajectory.sample(self._world.time - self._started)

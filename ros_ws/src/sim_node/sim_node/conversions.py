@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where sim_node's types meet messages."""
+
+from __future__ import annotations
+
+import numpy as np
+from builtin_interfaces.msg import Duration, Time
+from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+from sensor_msgs.msg import CameraInfo, JointState
+from std_msgs.msg import Header
+from tamp_runtime.images import image_from_array
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from .camera import Frame
+from .scene import CameraConfig
+from .trajectory import TrajectoryError
+
+WORLD_FRAME = "world"
+CAMERA_FRAME = "camera_optical_frame"
+
+
+def time_message(nanoseconds: int) -> Time:
+    return Time(sec=nanoseconds // 10**9, nanosec=nanoseconds % 10**9)
+
+
+def camera_messages(frame: Frame, config: CameraConfig, stamp: Time) -> tuple:
+    """Colour, depth and segmentation image and camera info, with one header."""
+    header = Header(stamp=stamp, frame_id=CAMERA_FRAME)
+    k = config.intrinsics
+    info = CameraInfo(
+        header=header,
+        width=config.width,
+        height=config.height,
+        distortion_model="plumb_bob",
+        d=[0.0] * 5,
+        k=k.ravel().tolist(),
+        r=np.eye(3).ravel().tolist(),
+        p=np.hstack([k, np.zeros((3, 1))]).ravel().tolist(),
+    )
+    return (
+        image_from_array(frame.rgb, "rgb8", header),
+        image_from_array(frame.depth, "32FC1", header),
+        image_from_array(frame.labels, "16UC1", header),
+        info,
+    )
+
+
+def extrinsics_message(config: CameraConfig, stamp: Time) -> TransformStamped:
+    """The transform world → camera optical: the optical frame's pose in world."""
+    pose = config.world_from_optical
+    x, y, z, w = Rotation.from_matrix(pose[:3, :3]).as_quat().tolist()
+    position = pose[:3, 3].tolist()
+    return TransformStamped(
+        header=Header(stamp=stamp, frame_id=WORLD_FRAME),
+        child_frame_id=CAMERA_FRAME,
+        transform=Transform(
+            translation=Vector3(x=position[0], y=position[1], z=position[2]),
+            rotation=Quaternion(x=x, y=y, z=z, w=w),
+        ),
+    )
+
+
+def joint_state_message(
+    names: tuple[str, ...],
+    positions: NDArray[np.float64],
+    velocities: NDArray[np.float64],
+    efforts: NDArray[np.float64],
+    stamp: Time,
+) -> JointState:
+    return JointState(
+        header=Header(stamp=stamp),
+        name=list(names),
+        position=positions.tolist(),
+        velocity=velocities.tolist(),
+        effort=efforts.tolist(),
+    )
+
+
+def trajectory_arrays(
+    message: JointTrajectory,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64] | None]:
+    """Times (t,), positions (t, n) and velocities (t, n) or None.
+
+    Raises:
+        TrajectoryError: if the points have different numbers of values.
+    """
+    points: list[JointTrajectoryPoint] = message.points
+    joints = len(message.joint_names)
+    has_velocities = all(point.velocities for point in points)
+    for index, point in enumerate(points):
+        if len(point.positions) != joints:
+            raise TrajectoryError(
+                f"point {index} has {len(point.positions)} positions for {joints} joints"
+            )
+        if point.velocities and len(point.velocities) != joints:
+            raise TrajectoryError(
+                f"point {index} has {len(point.velocities)} velocities for {joints} joints"
+            )
+    times = np.array([_seconds(point.time_from_start) for point in points])
+    positions = np.array([point.positions for point in points], dtype=float)
+    velocities = (
+        np.array([point.velocities for point in points], dtype=float) if has_velocities else None
+    )
+    return times, positions, velocities
+
+
+def _seconds(duration: Duration) -> float:
+    return duration.sec + 1e-9 * duration.nanosec

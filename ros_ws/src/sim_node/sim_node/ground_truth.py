@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The true scene graph, read off the physics: for evaluation and tests only."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from scene_graph import UP, Base, Relation, SceneGraph, SceneObject, base_name, split_object_name
+
+from .world import World
+
+#: A block counts as standing on what is below it within these distances [m].
+_HEIGHT_TOLERANCE = 0.006
+
+
+def true_scene_graph(world: World) -> SceneGraph:
+    """Objects with true poses, and up-relations for the blocks that stand on something.
+
+    A block stands on another, or on a base, if its bottom touches the other's top and its centre
+    is above it. A block that stands on nothing (in the hand, fallen over between two places) has
+    no relation, so the graph is then no complete state.
+    """
+    config = world.config
+    objects = []
+    for name in sorted(world.names):
+        position, quaternion = world.block_pose(name)
+        color, shape = split_object_name(name)
+        objects.append(
+            SceneObject(
+                name,
+                color,
+                shape,
+                position,
+                quaternion,
+                (config.block_size,) * 3,
+                world.label(name),
+            )
+        )
+    tops = [(base_name(i), np.array(base)) for i, base in enumerate(config.stack_positions)]
+    reach = {base_name(i): _base_reach(config.stack_positions) for i in range(config.stack_count)}
+    for item in objects:
+        tops.append((item.name, np.add(item.position_world, [0.0, 0.0, 0.5 * config.block_size])))
+        reach[item.name] = 0.5 * config.block_size
+    relations = set()
+    for item in objects:
+        bottom = np.array(item.position_world) - [0, 0, 0.5 * config.block_size]
+        for below, top in tops:
+            offset = bottom - top
+            touches = below != item.name and abs(offset[2]) < _HEIGHT_TOLERANCE
+            if touches and np.abs(offset[:2]).max() < reach[below]:
+                relations.add(Relation(item.name, UP, below))
+                break
+    bases = tuple(Base(i, base) for i, base in enumerate(config.stack_positions))
+    return SceneGraph(tuple(objects), frozenset(relations), bases)
+
+
+def _base_reach(positions: tuple[tuple[float, float, float], ...]) -> float:
+    """Half the distance of neighbouring places [m]: the share of the table that is a base's."""
+    gaps = [np.linalg.norm(np.subtract(a, b)) for a, b in itertools.pairwise(positions)]
+    return 0.4 * float(min(gaps, default=0.2))
