@@ -15,7 +15,11 @@ setup(
     install_requires=["setuptools"],
     zip_safe=False,
     license="Apache-2.0",
-    entry_points={"console_scripts": [
-        # executables, where ros2 run finds them
-    ]},
+    entry_points={
+        "console_scripts": [
+            "planner_node = planner_node.node:main",
+            "plan_to_goal = planner_node.commands:plan_to_goal_main",
+            "achieve_goal = planner_node.commands:achieve_goal_main",
+        ]
+    },
 )

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The clients that people type: ``plan_to_goal`` and ``achieve_goal``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import rclpy
+from PIL import Image as PngImage
+from PIL import UnidentifiedImageError
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import remove_ros_args
+from sensor_msgs.msg import Image
+from std_msgs.msg import Header
+from tamp_interfaces.action import AchieveGoal
+from tamp_interfaces.srv import PlanToGoal
+from tamp_runtime.images import image_from_array
+from tamp_runtime.runner import keep_discovery_on_this_host
+
+from .client import PlannerClient, PlannerUnavailableError
+from .plan_text import describe_plan
+from .progress import ProgressPrinter
+
+SUCCEEDED: Final = (PlanToGoal.Response.SUCCESS, PlanToGoal.Response.ALREADY_TRUE)
+EXIT_FAILED: Final = 1
+EXIT_CANCELLED: Final = 130
+#: How long a cancelled motion may take until it rests [s].
+CANCEL_TIMEOUT: Final = 60.0
+
+
+def plan_to_goal(arguments: Sequence[str] | None = None) -> int:
+    """Prints a plan; the exit code is 0 if there is one, or nothing needs to be done."""
+    arguments = sys.argv if arguments is None else arguments
+    parser = _parser("plan_to_goal", "Plans from what the camera sees to a goal.", 10.0)
+    parser.add_argument("--execute", action="store_true", help="also have the plan carried out")
+    options = parser.parse_args(remove_ros_args(arguments)[1:])
+    image, segmentation = _read_images(parser, options)
+    _init(arguments)
+    try:
+        with PlannerClient() as planner:
+            answer = planner.plan(
+                options.goal,
+                goal_image=image,
+                goal_segmentation=segmentation,
+                execute=options.execute,
+                timeout=options.timeout,
+            )
+    except PlannerUnavailableError as error:
+        print(f"plan_to_goal: {error}", file=sys.stderr)
+        return EXIT_FAILED
+    except KeyboardInterrupt:
+        return EXIT_CANCELLED
+    finally:
+        rclpy.try_shutdown()
+    if answer.status not in SUCCEEDED:
+        print(f"plan_to_goal: {answer.message}", file=sys.stderr)
+        return EXIT_FAILED
+    print(answer.message)
+    for line in describe_plan(answer.plan, answer.states):
+        print(line)
+    print(f"{answer.expanded} states expanded in {answer.planning_seconds:.3f} s")
+    return 0
+
+
+def achieve_goal(arguments: Sequence[str] | None = None) -> int:
+    """Has a goal achieved and shows how; Ctrl-C cancels it and waits until the arm rests."""
+    arguments = sys.argv if arguments is None else arguments
+    parser = _parser("achieve_goal", "Achieves a goal, until the camera confirms it.", 600.0)
+    options = parser.parse_args(remove_ros_args(arguments)[1:])
+    image, segmentation = _read_images(parser, options)
+    _init(arguments)
+    try:
+        with PlannerClient() as planner:
+            try:
+                planner.start(options.goal, goal_image=image, goal_segmentation=segmentation)
+                if _follow(planner, options.timeout):
+                    return _report(planner.result(timeout=1.0))
+                print(f"achieve_goal: not done after {options.timeout:g} s", file=sys.stderr)
+            except KeyboardInterrupt:
+                return _cancel(planner, EXIT_CANCELLED)
+            return _cancel(planner, EXIT_FAILED)
+    except PlannerUnavailableError as error:
+        print(f"achieve_goal: {error}", file=sys.stderr)
+        return EXIT_FAILED
+    except KeyboardInterrupt:
+        print("achieve_goal: not waiting for the arm to rest", file=sys.stderr)
+        return EXIT_CANCELLED
+    finally:
+        rclpy.try_shutdown()
+
+
+def plan_to_goal_main() -> None:
+    sys.exit(plan_to_goal())
+
+
+def achieve_goal_main() -> None:
+    sys.exit(achieve_goal())
+
+
+def _parser(name: str, description: str, timeout: float) -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog=name,
+        description=description,
+        epilog="Without a goal text, a goal image and its segmentation say what is wanted.",
+    )
+    parser.add_argument("goal", nargs="?", default="", help="such as 'red on blue'")
+    parser.add_argument("--timeout", type=float, default=timeout, help="[s], default %(default)s")
+    parser.add_argument("--goal-image", type=Path, metavar="PNG", help="an RGB image")
+    parser.add_argument(
+        "--goal-segmentation", type=Path, metavar="PNG", help="its instance labels, 8 or 16 bits"
+    )
+    return parser
+
+
+def _read_images(
+    parser: argparse.ArgumentParser, options: argparse.Namespace
+) -> tuple[Image | None, Image | None]:
+    """The goal image and its segmentation, or nothing; ends the program if they do not fit."""
+    paths = (options.goal_image, options.goal_segmentation)
+    if (paths[0] is None) != (paths[1] is None):
+        parser.error("--goal-image and --goal-segmentation belong together")
+    if paths[0] is None:
+        return None, None
+    try:
+        with PngImage.open(paths[0]) as image, PngImage.open(paths[1]) as labels:
+            colors = np.asarray(image.convert("RGB"))
+            numbers = np.asarray(labels)
+    except (OSError, UnidentifiedImageError) as error:
+        parser.error(f"cannot read the goal image: {error}")
+    if numbers.ndim != 2 or numbers.dtype.kind not in "ui" or numbers.max(initial=0) > 0xFFFF:
+        parser.error(f"{paths[1]} is not an image of labels: one channel of 8 or 16 bits")
+    return (
+        image_from_array(colors, "rgb8", Header()),
+        image_from_array(numbers.astype(np.uint16), "16UC1", Header()),
+    )
+
+
+def _init(arguments: Sequence[str]) -> None:
+    keep_discovery_on_this_host()
+    # Ctrl-C must reach this program as KeyboardInterrupt: it still has a goal to cancel.
+    rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
+
+
+def _follow(planner: PlannerClient, timeout: float) -> bool:
+    """Prints feedback until the goal is done; False if that takes longer than ``timeout`` [s]."""
+    printer = ProgressPrinter()
+    deadline = time.monotonic() + timeout
+    try:
+        while time.monotonic() < deadline:
+            feedback = planner.next_feedback(timeout=0.1)
+            if feedback is not None:
+                printer.show(feedback)
+            elif planner.is_done():
+                return True
+        return False
+    finally:
+        printer.finish()
+
+
+def _cancel(planner: PlannerClient, exit_code: int) -> int:
+    print("achieve_goal: cancelling, waiting until the arm rests", file=sys.stderr)
+    planner.cancel()
+    if not _follow(planner, CANCEL_TIMEOUT):
+        print(f"achieve_goal: no end after {CANCEL_TIMEOUT:g} s", file=sys.stderr)
+        return EXIT_FAILED
+    result = planner.result(timeout=1.0)
+    print(f"achieve_goal: {result.message}", file=sys.stderr)
+    return exit_code
+
+
+def _report(result: AchieveGoal.Result) -> int:
+    where = f" [{result.module}]" if result.module else ""
+    if result.status not in SUCCEEDED:
+        print(f"achieve_goal{where}: {result.message}", file=sys.stderr)
+        return EXIT_FAILED
+    print(result.message)
+    print(
+        f"{result.moves_executed} moves, {result.replans} replans; "
+        f"perceive {result.perceive_seconds:.2f} s, plan {result.plan_seconds:.3f} s, "
+        f"motion {result.motion_seconds:.2f} s, execute {result.execute_seconds:.2f} s"
+    )
+    return 0

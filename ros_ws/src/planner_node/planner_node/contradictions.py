@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Goals whose relations exclude one another, found before the search and named in a sentence.
+
+The rules are sound: what they refuse, no arrangement of blocks fulfils, whatever the scene. They
+are not complete; what they let pass and is impossible all the same, the search proves unreachable.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from scene_graph import base_index, base_name
+
+from .errors import ContradictoryGoalError
+from .goals import ABOVE, LEFT_OF, ON, Goal, GoalRelation
+
+
+def check_contradictions(goal: Goal, stack_count: int) -> None:
+    """Raises ContradictoryGoalError with a smallest set of relations that exclude one another."""
+    relations = list(goal.relations)
+    if find_contradiction(relations, stack_count) is None:
+        return
+    for relation in goal.relations:
+        fewer = [item for item in relations if item != relation]
+        if find_contradiction(fewer, stack_count) is not None:
+            relations = fewer
+    problem = find_contradiction(relations, stack_count)
+    assert problem is not None
+    raise ContradictoryGoalError(relations, problem)
+
+
+def find_contradiction(relations: Iterable[GoalRelation], stack_count: int) -> str | None:
+    """Why no state of ``stack_count`` stacks fulfils all relations; None if no reason is found."""
+    relations = tuple(relations)
+    for relation in relations:
+        if problem := _impossible_alone(relation, stack_count):
+            return problem
+    return (
+        _two_at_one_place(relations)
+        or _impossible_order(relations)
+        or _impossible_columns(relations, stack_count)
+    )
+
+
+def _impossible_alone(relation: GoalRelation, stack_count: int) -> str | None:
+    if base_index(relation.subject) is not None:
+        return f"{relation.subject} is a place, it cannot be moved"
+    index = base_index(relation.object)
+    if index is not None and index >= stack_count:
+        known = ", ".join(base_name(item) for item in range(stack_count))
+        return f"{relation.object} does not exist; there are {known}"
+    if relation.subject == relation.object:
+        return f"{relation.subject} cannot be {relation.predicate} itself"
+    return None
+
+
+def _two_at_one_place(relations: tuple[GoalRelation, ...]) -> str | None:
+    below: dict[str, str] = {}
+    above: dict[str, str] = {}
+    for relation in relations:
+        if relation.predicate != ON:
+            continue
+        other = below.setdefault(relation.subject, relation.object)
+        if other != relation.object:
+            return f"{relation.subject} cannot stand directly on both {other} and {relation.object}"
+        other = above.setdefault(relation.object, relation.subject)
+        if other != relation.subject:
+            return f"{other} and {relation.subject} cannot both stand directly on {relation.object}"
+    return None
+
+
+def _impossible_order(relations: tuple[GoalRelation, ...]) -> str | None:
+    """Closes "is somewhere above" and looks for something above itself."""
+    on = {(item.subject, item.object) for item in relations if item.predicate == ON}
+    above = on | {(item.subject, item.object) for item in relations if item.predicate == ABOVE}
+    stack_of = _stacks_of(relations)
+    while True:
+        derived = {(a, d) for a, b in above for c, d in above if b == c}
+        for upper, lower in on:
+            # Nothing fits in between: what is above the lower one is above the upper one too,
+            # and what the upper one is above, the lower one is above too.
+            derived |= {(a, upper) for a, b in above if b == lower and a != upper}
+            derived |= {(lower, d) for c, d in above if c == upper and d != lower}
+            if base_index(lower) is not None:
+                derived |= {
+                    (name, upper)
+                    for name, stack in stack_of.items()
+                    if stack == stack_of[upper] and name != upper and base_index(name) is None
+                }
+        if derived <= above:
+            break
+        above |= derived
+    for upper, lower in sorted(above):
+        if upper == lower:
+            return f"{upper} would have to be above itself"
+        if base_index(upper) is not None:
+            return f"{lower} would have to be below {upper}, the lowest place of its stack"
+    return None
+
+
+def _impossible_columns(relations: tuple[GoalRelation, ...], stack_count: int) -> str | None:
+    """Bounds the index of every stack; a left-of moves the bounds by one."""
+    stack_of = _stacks_of(relations)
+    low = dict.fromkeys(stack_of.values(), 0)
+    high = dict.fromkeys(stack_of.values(), stack_count - 1)
+    base_of: dict[str, str] = {}
+    for name, stack in stack_of.items():
+        index = base_index(name)
+        if index is None:
+            continue
+        if stack in base_of:
+            return f"{base_of[stack]} and {name} would have to be one stack"
+        base_of[stack] = name
+        low[stack] = high[stack] = index
+    lefts = [item for item in relations if item.predicate == LEFT_OF]
+    # Without a contradiction no bound moves more often than there are stacks.
+    for _ in range(len(low) + 1):
+        for item in lefts:
+            left, right = stack_of[item.subject], stack_of[item.object]
+            if left == right:
+                return f"{item.subject} and {item.object} would have to be in one stack and apart"
+            low[right] = max(low[right], low[left] + 1)
+            high[left] = min(high[left], high[right] - 1)
+            if low[right] > high[right] or low[left] > high[left]:
+                return (
+                    f"{item.subject} cannot be left of {item.object} as well: "
+                    f"there are only {stack_count} stacks"
+                )
+    return None
+
+
+def _stacks_of(relations: tuple[GoalRelation, ...]) -> dict[str, str]:
+    """For every object and base, a representative of those that must share its stack."""
+    stack_of = {name: name for item in relations for name in (item.subject, item.object)}
+    for item in relations:
+        if item.predicate in (ON, ABOVE):
+            kept, merged = stack_of[item.subject], stack_of[item.object]
+            stack_of = {
+                name: kept if stack == merged else stack for name, stack in stack_of.items()
+            }
+    return stack_of

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Why a goal cannot be planned for; every error carries what failed and a status."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import ClassVar
+
+
+class PlannerError(Exception):
+    """Base class; the message is a sentence that a person can act on.
+
+    Attributes:
+        status: name of the constant of PlanToGoal and AchieveGoal that reports this error.
+        module: the part of the system that could not go on: perception, planner, motion or "".
+    """
+
+    status: ClassVar[str] = "INTERNAL_ERROR"
+    module: ClassVar[str] = "planner"
+
+
+class InvalidGoalError(PlannerError):
+    """The goal cannot be understood; ``text`` stands at ``offset``, counted from 0."""
+
+    status = "INVALID_GOAL"
+
+    def __init__(self, problem: str, offset: int = 0, text: str = "") -> None:
+        where = f"at offset {offset} ('{text}'): " if text else f"at offset {offset}: "
+        super().__init__(where + problem)
+        self.offset = offset
+        self.text = text
+
+
+class UnknownObjectError(PlannerError):
+    """The goal names something that is not among the ``known`` objects."""
+
+    status = "UNKNOWN_OBJECT"
+
+    def __init__(self, name: str, known: Sequence[str], problem: str) -> None:
+        super().__init__(problem)
+        self.name = name
+        self.known = tuple(known)
+
+
+class AmbiguousObjectError(PlannerError):
+    """A name fits several ``candidates``."""
+
+    status = "AMBIGUOUS_OBJECT"
+
+    def __init__(self, name: str, candidates: Sequence[str], problem: str) -> None:
+        super().__init__(problem)
+        self.name = name
+        self.candidates = tuple(candidates)
+
+
+class ObjectLostError(UnknownObjectError):
+    """Objects of a goal that was understood before are no longer seen."""
+
+    module = "perception"
+
+    def __init__(self, missing: Sequence[str], known: Sequence[str]) -> None:
+        super().__init__(
+            missing[0],
+            known,
+            f"{', '.join(missing)} cannot be seen any more; the scene has {', '.join(known)}",
+        )
+
+
+class ContradictoryGoalError(PlannerError):
+    """No arrangement of the blocks fulfils all ``relations``, given as text."""
+
+    status = "CONTRADICTORY_GOAL"
+
+    def __init__(self, relations: Iterable[object], problem: str) -> None:
+        self.relations = tuple(str(relation) for relation in relations)
+        super().__init__(f"{problem} (from: {', '.join(self.relations)})")
+
+
+class SearchError(PlannerError):
+    """The search ended without a plan after ``expanded`` states and ``seconds``."""
+
+    def __init__(self, problem: str, expanded: int, seconds: float) -> None:
+        super().__init__(problem)
+        self.expanded = expanded
+        self.seconds = seconds
+
+
+class UnreachableError(SearchError):
+    """Proven: every reachable state was searched and none fulfils the goal."""
+
+    status = "UNREACHABLE"
+
+
+class SearchLimitError(SearchError):
+    """Not reached within the bound on expansions: nothing is proven."""
+
+    status = "SEARCH_LIMIT"
+
+
+class SearchCancelledError(SearchError):
+    """Stopped by its caller."""
+
+    status = "CANCELLED"
+    module = ""
+
+
+class NoSceneGraphError(PlannerError):
+    """No scene graph has arrived."""
+
+    status = "NO_SCENE_GRAPH"
+    module = "perception"
+
+
+class NotConfidentError(PlannerError):
+    """The newest scene graph cannot be trusted."""
+
+    status = "NOT_CONFIDENT"
+    module = "perception"
+
+
+class GoalImageError(PlannerError):
+    """The goal image cannot be interpreted, or does not show the objects of the scene."""
+
+    status = "GOAL_IMAGE_REJECTED"
+    module = "perception"
+
+    def __init__(
+        self, problem: str, missing: Sequence[str] = (), extra: Sequence[str] = ()
+    ) -> None:
+        super().__init__(problem)
+        self.missing = tuple(missing)
+        self.extra = tuple(extra)
+
+
+class BusyError(PlannerError):
+    """Another plan or goal is under way; ``plan_id`` names it where it is known."""
+
+    status = "BUSY"
+
+    def __init__(self, problem: str, plan_id: str = "") -> None:
+        super().__init__(problem)
+        self.plan_id = plan_id
+
+
+class CancelledError(PlannerError):
+    """Stopped on request; nothing is held."""
+
+    status = "CANCELLED"
+    module = ""
+
+
+class MotionFailedError(PlannerError):
+    """The motion node cannot carry the plan out; the message is its own."""
+
+    status = "MOTION_FAILED"
+    module = "motion"
+
+
+class MotionBusyError(BusyError):
+    """The motion node carries out somebody else's plan."""
+
+    module = "motion"
+
+
+class MotionSilentError(PlannerError):
+    """The motion node does not answer."""
+
+    status = "MOTION_SILENT"
+    module = "motion"
+
+
+class TooManyReplansError(PlannerError):
+    """The scene kept differing from what was planned, ``replans`` times."""
+
+    status = "TOO_MANY_REPLANS"
+
+    def __init__(self, problem: str, replans: int) -> None:
+        super().__init__(problem)
+        self.replans = replans
