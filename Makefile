@@ -7,13 +7,17 @@ VENV := .venv
 RUN := tools/in_workspace
 SOURCES := $(shell find ros_ws/src -name '*.py' -o -name 'package.xml' -o -name 'setup.cfg' 2>/dev/null)
 
-.PHONY: help setup demo test lint clean lock
+.PHONY: help setup demo test lint clean lock train-visual eval-visual eval-tasks results
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
 
 setup:  ## virtual environment and workspace, built where something changed
 	@tools/setup "$(PYTHON)"
+
+demo: setup  ## build a tower; SEED= BLOCKS= GOAL= OUT= RTF=
+	@$(RUN) ros2 run tamp_bringup demo $(if $(SEED),--seed $(SEED)) $(if $(BLOCKS),--blocks $(BLOCKS)) \
+	  $(if $(GOAL),--goal "$(GOAL)") $(if $(OUT),--out "$(OUT)") $(if $(RTF),--real-time-factor $(RTF))
 
 lint: setup  ## ruff and mypy
 	@$(VENV)/bin/ruff check .
@@ -22,6 +26,20 @@ lint: setup  ## ruff and mypy
 
 test: setup  ## the whole test suite
 	@$(RUN) pytest $(ARGS)
+
+train-visual: setup  ## train the visual module G without labels; resumable
+	@$(RUN) ros2 run sim_node render_dataset --out data/states_5 --blocks 5
+	@$(RUN) ros2 run perception_node train_visual --data data/states_5 $(ARGS)
+
+eval-visual: setup  ## scene graph accuracy on unseen states; QUICK=1
+	@$(RUN) python benchmarks/eval_visual.py $(ARGS)
+
+eval-tasks: setup  ## success from pixels to tower; N= BLOCKS= RESUME=1 QUICK=1
+	@$(RUN) python benchmarks/eval_tasks.py $(if $(N),--n $(N)) $(if $(BLOCKS),--blocks $(BLOCKS)) \
+	  $(if $(RESUME),--resume) $(ARGS)
+
+results: setup  ## docs/results.md from the result files
+	@$(RUN) python benchmarks/write_results_page.py
 
 lock:  ## compile requirements.in to the hash-pinned requirements.lock
 	@tools/lock

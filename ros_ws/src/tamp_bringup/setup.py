@@ -11,11 +11,15 @@ setup(
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml"]),
+        (f"share/{PACKAGE}/launch", ["launch/demo.launch.py"]),
+        (f"share/{PACKAGE}/config", ["config/demo.yaml", "config/demo.rviz"]),
     ],
     install_requires=["setuptools"],
     zip_safe=False,
     license="Apache-2.0",
-    entry_points={"console_scripts": [
-        # executables, where ros2 run finds them
-    ]},
+    entry_points={
+        "console_scripts": [
+            "demo = tamp_bringup.demo:main",
+        ]
+    },
 )

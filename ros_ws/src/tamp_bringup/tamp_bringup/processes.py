@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Starts the nodes of the graph as processes of their own, as a person would, and stops them."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Final
+
+from ament_index_python.packages import get_package_share_path
+
+#: The four nodes of the graph; each package's node has the package's name.
+NODES: Final = ("sim_node", "perception_node", "planner_node", "motion_node")
+
+_STOP_TIMEOUT = 8.0
+_PR_SET_PDEATHSIG = 1
+
+
+class NodeDiedError(RuntimeError):
+    """A node's process ended although nobody stopped it; ``node`` names it."""
+
+    def __init__(self, node: str, code: int, log: Path) -> None:
+        tail = "\n".join(log.read_text(errors="replace").splitlines()[-8:])
+        super().__init__(f"{node} ended with exit code {code}; its log {log} ends with:\n{tail}")
+        self.node = node
+
+
+class NodeProcesses:
+    """The graph's processes, as a context manager; each node logs into a file of its own.
+
+    Args:
+        log_folder: receives ``NODE.log``.
+        parameters: parameters by node, added to those of ``config/demo.yaml``.
+        nodes: which nodes to start.
+    """
+
+    def __init__(
+        self,
+        log_folder: Path,
+        parameters: Mapping[str, Mapping[str, Any]] | None = None,
+        nodes: tuple[str, ...] = NODES,
+    ) -> None:
+        self._logs = log_folder
+        self._parameters = parameters or {}
+        self._nodes = nodes
+        self._processes: dict[str, subprocess.Popen[bytes]] = {}
+
+    def __enter__(self) -> NodeProcesses:
+        self._logs.mkdir(parents=True, exist_ok=True)
+        try:
+            for node in self._nodes:
+                self.start(node)
+        except BaseException:
+            self.stop_all()
+            raise
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.stop_all()
+
+    def start(self, node: str) -> None:
+        """Starts one node by ``ros2 run``."""
+        defaults = get_package_share_path("tamp_bringup") / "config" / "demo.yaml"
+        command = ["ros2", "run", node, node, "--ros-args", "--params-file", str(defaults)]
+        for name, value in self._parameters.get(node, {}).items():
+            command += ["-p", f"{name}:={value}"]
+        with (self._logs / f"{node}.log").open("ab") as log:
+            # A session of its own: Ctrl-C in the terminal must reach the client first, which stops
+            # the arm before the nodes go away.
+            self._processes[node] = subprocess.Popen(
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                preexec_fn=_die_with_parent,
+            )
+
+    def stop(self, node: str) -> int:
+        """Stops one node with SIGINT, and by force if it takes too long; returns its exit code."""
+        process = self._processes.pop(node)
+        self._signal(process, signal.SIGINT)
+        try:
+            return process.wait(_STOP_TIMEOUT)
+        except subprocess.TimeoutExpired:
+            self._signal(process, signal.SIGKILL)
+            return process.wait(_STOP_TIMEOUT)
+
+    def stop_all(self) -> dict[str, int]:
+        """Stops every node that runs; returns exit codes by node."""
+        for process in self._processes.values():
+            self._signal(process, signal.SIGINT)
+        return {node: self.stop(node) for node in reversed(list(self._processes))}
+
+    def check(self) -> None:
+        """Raises NodeDiedError if a node has ended by itself."""
+        for node, process in self._processes.items():
+            if (code := process.poll()) is not None:
+                raise NodeDiedError(node, code, self._logs / f"{node}.log")
+
+    @staticmethod
+    def _signal(process: subprocess.Popen[bytes], number: signal.Signals) -> None:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, number)
+
+
+def use_own_domain() -> int:
+    """Chooses a DDS domain that no other graph on this host is likely to use, unless one is set.
+
+    Returns:
+        The domain id, also put into ``ROS_DOMAIN_ID`` for this process and its children.
+    """
+    if "ROS_DOMAIN_ID" not in os.environ:
+        os.environ["ROS_DOMAIN_ID"] = str(60 + (os.getpid() + time.time_ns() // 1000) % 41)
+    return int(os.environ["ROS_DOMAIN_ID"])
+
+
+def _die_with_parent() -> None:
+    """The child gets SIGTERM if this process dies without stopping it (Linux)."""
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What evaluation may see and the nodes may not: ground truth; and it resets the scene."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any
+
+import rclpy
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from sensor_msgs.msg import Image
+from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
+from tamp_interfaces.srv import ResetScene
+from tamp_runtime.conversions import graph_from_message
+from tamp_runtime.images import array_from_image
+from tamp_runtime.qos import LATCHED, NEWEST
+
+from scene_graph import InconsistentRelationsError, SceneGraph, Stacks
+from sim_node.layouts import format_layout
+
+from .recording import Recording
+
+
+class SimulationError(RuntimeError):
+    """The simulator does not answer, or refuses; the sentence says what to do."""
+
+
+class SceneObserver:
+    """Watches the simulator's ground truth, the camera and perception from a thread of its own.
+
+    Attributes:
+        recording: receives the camera's images while it is set.
+        graph_seconds: image → graph times of perception's confident graphs [s].
+    """
+
+    def __init__(self) -> None:
+        self._node = rclpy.create_node("scene_observer")
+        self._truth: SceneGraphMsg | None = None
+        self._graph: SceneGraphMsg | None = None
+        self._image: Image | None = None
+        self.recording: Recording | None = None
+        self.graph_seconds: list[float] = []
+        self._news = threading.Condition()
+        node = self._node
+        node.create_subscription(SceneGraphMsg, "sim/ground_truth", self._on_truth, LATCHED)
+        node.create_subscription(SceneGraphMsg, "scene_graph", self._on_graph, NEWEST)
+        node.create_subscription(Image, "camera/image_raw", self._on_image, NEWEST)
+        self._reset = node.create_client(ResetScene, "sim/reset")
+        self._executor = SingleThreadedExecutor()
+        self._executor.add_node(node)
+        self._closing = threading.Event()
+        self._thread = threading.Thread(target=self._spin, name="scene_observer", daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> SceneObserver:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._closing.set()
+        self._thread.join(timeout=5.0)
+        self._executor.shutdown()
+        self._node.destroy_node()
+
+    def reset(
+        self, seed: int = 0, blocks: int = 5, layout: Stacks | None = None, timeout: float = 30.0
+    ) -> SceneGraph:
+        """Puts the scene into a random or a given state and returns the ground truth then.
+
+        Raises:
+            SimulationError: if the simulator is not there or refuses.
+        """
+        request = ResetScene.Request(
+            seed=seed, blocks=blocks, layout=format_layout(layout) if layout else []
+        )
+        if not self._reset.wait_for_service(timeout_sec=timeout):
+            raise SimulationError(
+                "sim_node does not answer; start it with: ros2 run sim_node sim_node"
+            )
+        future = self._reset.call_async(request)
+        answered = threading.Event()
+        future.add_done_callback(lambda _: answered.set())
+        if not answered.wait(timeout):
+            raise SimulationError(f"sim_node did not reset the scene within {timeout:g} s")
+        response = future.result()
+        if not response.success:
+            raise SimulationError(response.message)
+        return self.fresh_truth(timeout)
+
+    def fresh_truth(self, timeout: float = 10.0) -> SceneGraph:
+        """The ground truth of now: the second one to arrive from here on.
+
+        The first may have been on its way already.
+        """
+        with self._news:
+            for _ in range(2):
+                before = self._truth
+                self._wait(lambda before=before: self._truth is not before, "sim_node", timeout)
+            assert self._truth is not None
+            return graph_from_message(self._truth)
+
+    def confident_graph(self, timeout: float = 20.0) -> SceneGraphMsg:
+        """A confident scene graph that perception publishes from now on."""
+
+        def ready() -> bool:
+            graph = self._graph
+            return graph is not before and graph is not None and graph.status == graph.CONFIDENT
+
+        with self._news:
+            before = self._graph
+            try:
+                self._wait(ready, "perception_node", timeout)
+            except SimulationError as error:
+                seen = f"; it says: {self._graph.message}" if self._graph else ""
+                raise SimulationError(f"{error}{seen}") from None
+            assert self._graph is not None
+            return self._graph
+
+    def image(self) -> Any:
+        """The newest camera image, (height, width, 3) uint8, or None."""
+        return None if self._image is None else array_from_image(self._image, "rgb8")
+
+    def _wait(self, ready: Callable[[], bool], who: str, timeout: float) -> None:
+        deadline = time.monotonic() + timeout
+        while not ready():
+            if not self._news.wait(max(0.0, deadline - time.monotonic())) and not ready():
+                raise SimulationError(f"nothing usable arrived from {who} within {timeout:g} s")
+
+    def _on_truth(self, message: SceneGraphMsg) -> None:
+        with self._news:
+            self._truth = message
+            self._news.notify_all()
+
+    def _on_graph(self, message: SceneGraphMsg) -> None:
+        with self._news:
+            self._graph = message
+            if message.status == message.CONFIDENT:
+                self.graph_seconds.append(message.processing_seconds)
+            self._news.notify_all()
+
+    def _on_image(self, message: Image) -> None:
+        self._image = message
+        if self.recording is not None:
+            stamp = message.header.stamp
+            self.recording.add(array_from_image(message, "rgb8"), stamp.sec + 1e-9 * stamp.nanosec)
+
+    def _spin(self) -> None:
+        try:
+            while not self._closing.is_set():
+                self._executor.spin_once(timeout_sec=0.05)
+        except ExternalShutdownException:
+            pass  # whoever waits gets its own time-out
+
+
+def true_stacks(truth: SceneGraph) -> Stacks | None:
+    """The true state, or None while some block stands on nothing."""
+    try:
+        stacks = truth.stacks()
+    except InconsistentRelationsError:
+        return None
+    return stacks if sum(map(len, stacks)) == len(truth.objects) else None
