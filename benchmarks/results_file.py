@@ -117,9 +117,8 @@ def _commit() -> str:
             ["git", *arguments], capture_output=True, text=True, check=False
         ).stdout.strip()
 
-    changed = git(
-        "status", "--porcelain", "--untracked-files=no", "--", "ros_ws", "benchmarks/*.py"
-    )
+    sources = ("ros_ws", "benchmarks/*.py")
+    changed = git("status", "--porcelain", "--untracked-files=no", "--", *sources)
     return git("rev-parse", "--short", "HEAD") + ("+changes" if changed else "")
 
 

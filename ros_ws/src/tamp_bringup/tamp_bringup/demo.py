@@ -15,7 +15,9 @@ import time
 from datetime import datetime
 from pathlib import Path
 
+import numpy as np
 import rclpy
+from numpy.typing import NDArray
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 from tamp_interfaces.action import AchieveGoal
@@ -40,7 +42,7 @@ from .task_runner import run_task
 class Narrator:
     """Turns feedback into lines, a progress bar and the picture of the plan."""
 
-    def __init__(self, out: Path, image: object, goal: str) -> None:
+    def __init__(self, out: Path, image: NDArray[np.uint8] | None, goal: str) -> None:
         self._out, self._image, self._goal = out, image, goal
         self._last = ""
         self._plan_id = ""

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Ellipse, FancyBboxPatch
+from matplotlib.patches import Ellipse, FancyBboxPatch, Patch
 from numpy.typing import NDArray
 
 from scene_graph import COLORS, CYLINDER, SPHERE, Move, Stacks, split_object_name
@@ -22,7 +23,7 @@ _GREEN = "#1a8f2e"
 
 def draw_plan(
     path: Path,
-    image: NDArray | None,
+    image: NDArray[np.uint8] | None,
     states: Sequence[Stacks],
     moves: Sequence[Move],
     goal: str,
@@ -86,7 +87,7 @@ def _draw_block(axis: Axes, column: int, level: int, name: str) -> None:
     except ValueError:
         face, shape = (0.7, 0.7, 0.7), ""
     if shape == SPHERE:
-        patch = Ellipse((column, level + 0.5), 0.72, 0.92, facecolor=face, edgecolor="0.2")
+        patch: Patch = Ellipse((column, level + 0.5), 0.72, 0.92, facecolor=face, edgecolor="0.2")
     else:
         rounding = 0.18 if shape == CYLINDER else 0.03
         patch = FancyBboxPatch(

@@ -39,6 +39,7 @@ class SceneObserver:
     def __init__(self) -> None:
         self._node = rclpy.create_node("scene_observer")
         self._truth: SceneGraphMsg | None = None
+        self._truth_count = 0
         self._graph: SceneGraphMsg | None = None
         self._image: Image | None = None
         self.recording: Recording | None = None
@@ -100,9 +101,8 @@ class SceneObserver:
         The first may have been on its way already.
         """
         with self._news:
-            for _ in range(2):
-                before = self._truth
-                self._wait(lambda before=before: self._truth is not before, "sim_node", timeout)
+            wanted = self._truth_count + 2
+            self._wait(lambda: self._truth_count >= wanted, "sim_node", timeout)
             assert self._truth is not None
             return graph_from_message(self._truth)
 
@@ -136,6 +136,7 @@ class SceneObserver:
     def _on_truth(self, message: SceneGraphMsg) -> None:
         with self._news:
             self._truth = message
+            self._truth_count += 1
             self._news.notify_all()
 
     def _on_graph(self, message: SceneGraphMsg) -> None:
