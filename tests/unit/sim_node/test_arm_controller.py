@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The simulated arm follows a trajectory within its torques, and does not move for a bad one."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from sim_node.arm_controller import ArmController
+from sim_node.trajectory import TrajectoryError
+from sim_node.world import HOME, JOINTS, World
+
+
+@pytest.fixture(scope="module")
+def world() -> Iterator[World]:
+    with World() as world:
+        yield world
+
+
+def reach(world: World, arm: ArmController, seconds: float) -> float:
+    """Runs, and returns the largest tracking error of the arm's joints [rad]."""
+    worst = 0.0
+    for _ in range(round(seconds / world.timestep)):
+        arm.update()
+        target = arm._target()[0]
+        world.step()
+        worst = max(worst, float(np.abs(world.joint_state()[0] - target)[:7].max()))
+    return worst
+
+
+def test_it_follows_a_smooth_trajectory_closely_and_stays_at_its_end(world: World) -> None:
+    world.reset((("red_box",), (), ()))
+    arm = ArmController(world)
+    goal = np.array(HOME) + [0.5, 0.3, -0.3, -0.2, 0.2, 0.3, 0.4, -0.02, -0.02]
+    arm.follow(JOINTS, np.array([0.0, 1.5]), np.array([HOME, goal]), np.zeros((2, 9)))
+    assert arm.moving
+    assert reach(world, arm, 2.0) < 0.02
+    assert not arm.moving
+    assert world.joint_state()[0] == pytest.approx(goal, abs=5e-3)
+
+
+def test_a_refused_trajectory_moves_nothing(world: World) -> None:
+    world.reset((("red_box",), (), ()))
+    arm = ArmController(world)
+    far = np.array([np.array(HOME) + [0.5, *[0.0] * 8], np.array(HOME)])
+    with pytest.raises(TrajectoryError, match="would jump"):
+        arm.follow(JOINTS, np.array([0.0, 1.0]), far, None)
+    reach(world, arm, 0.5)
+    assert world.joint_state()[0] == pytest.approx(HOME, abs=2e-3)
+
+
+def test_stop_holds_the_arm_where_it_is(world: World) -> None:
+    world.reset((("red_box",), (), ()))
+    arm = ArmController(world)
+    goal = np.array(HOME) + [0.8, 0, 0, 0, 0, 0, 0, 0, 0]
+    arm.follow(JOINTS, np.array([0.0, 2.0]), np.array([HOME, goal]), np.zeros((2, 9)))
+    reach(world, arm, 1.0)
+    arm.stop()
+    held = world.joint_state()[0]
+    reach(world, arm, 1.0)
+    assert not arm.moving
+    assert abs(world.joint_state()[0][0] - held[0]) < 0.02
