@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 
 import rclpy
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
@@ -21,9 +22,7 @@ def keep_discovery_on_this_host() -> None:
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
 
 
-def run_node(
-    make_node: Callable[[], Node], args: list[str] | None = None, threads: int = 4
-) -> int:
+def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threads: int = 4) -> int:
     """Runs a node until SIGINT, SIGTERM or shutdown, and returns the process's exit code.
 
     0 after a regular stop; 2, with one sentence on stderr, if the node cannot start with its
@@ -46,8 +45,12 @@ def run_node(
         print(f"cannot start: {error}", file=sys.stderr)
         return 2
     finally:
-        executor.shutdown(timeout_sec=2.0)
+        rclpy.try_shutdown()
+        # Executor.shutdown of rclpy 7.1.6 leaves running callbacks behind; a node must not be
+        # destroyed under one. They see the shutdown, and every wait in them has a timeout.
+        workers: ThreadPoolExecutor = executor._executor
+        workers.shutdown(wait=True, cancel_futures=True)
+        executor.shutdown()
         if node is not None:
             node.destroy_node()
-        rclpy.try_shutdown()
     return 0
