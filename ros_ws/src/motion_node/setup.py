@@ -15,7 +15,9 @@ setup(
     install_requires=["setuptools"],
     zip_safe=False,
     license="Apache-2.0",
-    entry_points={"console_scripts": [
-        # executables, where ros2 run finds them
-    ]},
+    entry_points={
+        "console_scripts": [
+            # executables, where ros2 run finds them
+        ]
+    },
 )

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Paths to trajectories: times within the velocity and acceleration limits.
+
+A phase begins and ends at rest, so each phase is scaled in time on its own. Its path is a cubic
+spline through the steps, clamped at both ends, hence with continuous accelerations inside. The
+acceleration is piecewise linear, so its extremes lie at the knots and the limits hold exactly
+everywhere, not only at samples. Points are laid on the knots and evenly in between, so that a
+controller's cubic Hermite interpolation reproduces the spline.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from .path_problem import PhasePath
+from .phases import HOME, Phase
+from .trajectory import Interval, Trajectory
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TimingSettings:
+    """How fast.
+
+    Attributes:
+        velocity_scale, acceleration_scale: shares of the joints' limits that may be used.
+        close_seconds, open_seconds: standing still while the fingers close or open [s].
+        finger_speed: of each finger joint [m/s].
+        point_seconds: longest time between points of the trajectory [s].
+    """
+
+    velocity_scale: float = 0.6
+    acceleration_scale: float = 0.5
+    close_seconds: float = 0.5
+    open_seconds: float = 0.4
+    finger_speed: float = 0.1
+    point_seconds: float = 0.02
+
+
+@dataclass(frozen=True)
+class JointLimits:
+    """Limits of the arm's joints, each of shape (n,) [rad/s, rad/s²]."""
+
+    velocity: Array
+    acceleration: Array
+
+
+def unit_spline(q: Array) -> CubicSpline:
+    """Clamped cubic spline through configurations (steps + 1, n) over 0..1."""
+    return CubicSpline(np.linspace(0.0, 1.0, len(q)), q, bc_type="clamped")
+
+
+def shortest_duration(spline: CubicSpline, limits: JointLimits) -> float:
+    """Shortest time [s] over which the spline keeps within the limits.
+
+    The velocity's extremes lie at knots or where the acceleration crosses zero in between.
+    """
+    knots = spline.x
+    at_knots = spline(knots, 2)
+    begin, end = at_knots[:-1], at_knots[1:]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(begin * end < 0, begin / (begin - end), 0.0)
+    crossing = knots[:-1, None] + share * np.diff(knots)[:, None]
+    speeds = [np.abs(spline(knots, 1)).max(axis=0)]
+    for joint in range(at_knots.shape[1]):
+        speeds.append(np.abs(spline(crossing[:, joint], 1)).max(axis=0))
+    velocity = np.max(speeds, axis=0) / limits.velocity
+    acceleration = np.abs(at_knots).max(axis=0) / limits.acceleration
+    return float(max(velocity.max(), np.sqrt(acceleration.max()), 0.05))
+
+
+class _Points:
+    """Collects points of the arm and the fingers."""
+
+    def __init__(self, settings: TimingSettings) -> None:
+        self.settings = settings
+        self.now = 0.0
+        self.times: list[Array] = []
+        self.positions: list[Array] = []
+        self.velocities: list[Array] = []
+        self.intervals: list[Interval] = []
+
+    def travel(self, path: PhasePath, duration: float, fingers: Array) -> None:
+        """The arm follows a path, the fingers stay; the end point is left to what follows."""
+        spline = unit_spline(path.q)
+        intervals = len(path.q) - 1
+        parts = max(1, int(np.ceil(duration / intervals / self.settings.point_seconds)))
+        u = np.arange(intervals * parts) / (intervals * parts)
+        self._add(u * duration, spline(u), spline(u, 1) / duration, fingers)
+        self._close(path.phase, duration, gripping=False)
+
+    def grip(self, phase: Phase, q: Array, fingers: Array, target: Array, seconds: float) -> None:
+        """The arm stands still while the fingers go to a target at their speed, smoothly."""
+        distance = float(np.abs(target - fingers).max())
+        ramp = min(max(1.5 * distance / self.settings.finger_speed, 0.1), seconds * 0.95)
+        count = max(2, int(np.ceil(ramp / self.settings.point_seconds)))
+        u = np.arange(count + 1)[:, None] / count
+        moving = fingers + (target - fingers) * (3 - 2 * u) * u**2
+        rate = (target - fingers) * 6 * u * (1 - u) / ramp
+        arm = np.tile(q, (count + 1, 1))
+        self._add(u[:, 0] * ramp, arm, np.zeros_like(arm), moving, rate)
+        self._close(phase, seconds, gripping=True)
+
+    def _add(
+        self, times: Array, arm: Array, speed: Array, fingers: Array, rate: Array | None = None
+    ) -> None:
+        shape = (len(times), 2)
+        self.times.append(self.now + times)
+        self.positions.append(np.hstack([arm, np.broadcast_to(fingers, shape)]))
+        self.velocities.append(np.hstack([speed, np.zeros(shape) if rate is None else rate]))
+
+    def _close(self, phase: Phase, seconds: float, gripping: bool) -> None:
+        self.intervals.append(Interval(self.now, self.now + seconds, phase, gripping))
+        self.now += seconds
+
+    def finish(self, joint_names: tuple[str, ...], q: Array, fingers: Array) -> Trajectory:
+        self._add(np.zeros(1), q[None], np.zeros((1, len(q))), fingers)
+        return Trajectory(
+            joint_names,
+            np.concatenate(self.times),
+            np.vstack(self.positions),
+            np.vstack(self.velocities),
+            tuple(self.intervals),
+        )
+
+
+def time_paths(
+    paths: Sequence[PhasePath],
+    joint_names: tuple[str, ...],
+    limits: JointLimits,
+    settings: TimingSettings,
+    fingers: Array,
+    open_first: float | None = None,
+) -> Trajectory:
+    """The trajectory through solved phases, with the fingers' closing and opening at the switches.
+
+    Args:
+        fingers: positions of the two finger joints at the start, shape (2,) [m].
+        open_first: finger position to go to before the arm moves [m]; None: they stay.
+    """
+    scaled = JointLimits(
+        settings.velocity_scale * limits.velocity,
+        settings.acceleration_scale * limits.acceleration,
+    )
+    points = _Points(settings)
+    now = np.array(fingers, dtype=float)
+    first = paths[0]
+    if open_first is not None and np.abs(now - open_first).max() > 1e-4:
+        target = np.full(2, open_first)
+        points.grip(first.phase, first.q[0], now, target, settings.open_seconds)
+        now = target
+    for path in paths:
+        duration = shortest_duration(unit_spline(path.q), scaled)
+        points.travel(path, duration, now)
+        if path.phase.kind != HOME:
+            target = np.full(2, path.phase.grip)
+            closing = float(target[0]) < float(now[0])
+            seconds = settings.close_seconds if closing else settings.open_seconds
+            points.grip(path.phase, path.q[-1], now, target, seconds)
+            now = target
+    return points.finish(joint_names, paths[-1].q[-1], now)

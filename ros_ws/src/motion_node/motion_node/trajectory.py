@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Trajectories of all joints: timed points, what happens when, braking and cutting."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .phases import HOME, Phase
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Interval:
+    """What a stretch of a trajectory does.
+
+    Attributes:
+        start, end: [s] since the trajectory's start.
+        phase: the phase it belongs to.
+        gripping: whether the arm stands still at the phase's switch while the fingers move.
+    """
+
+    start: float
+    end: float
+    phase: Phase
+    gripping: bool
+
+    @property
+    def holding(self) -> bool:
+        """Whether a block is held throughout the interval, the closing of the fingers left out."""
+        return bool(self.phase.tool.held)
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """Positions and velocities of all joints at growing times, cubic in between (Hermite).
+
+    Attributes:
+        joint_names: the arm's, then the fingers'.
+        times: shape (t,), from 0 [s].
+        positions, velocities: shape (t, joints) [rad, m; per s].
+        intervals: what happens when, in order, without gaps.
+    """
+
+    joint_names: tuple[str, ...]
+    times: Array
+    positions: Array
+    velocities: Array
+    intervals: tuple[Interval, ...]
+
+    @property
+    def duration(self) -> float:
+        """Length in time [s]."""
+        return float(self.times[-1])
+
+    def sample(self, times: Array | float) -> tuple[Array, Array]:
+        """Positions and velocities at times [s], clipped to the trajectory's; shape (..., joints)."""
+        at = np.clip(np.asarray(times, dtype=float), 0.0, self.duration)
+        index = np.clip(np.searchsorted(self.times, at, side="right") - 1, 0, len(self.times) - 2)
+        span = (self.times[index + 1] - self.times[index])[..., None]
+        u = (at - self.times[index])[..., None] / span
+        p0, p1 = self.positions[index], self.positions[index + 1]
+        v0, v1 = self.velocities[index] * span, self.velocities[index + 1] * span
+        delta = p1 - p0
+        position = p0 + u * (v0 + u * (3 * delta - 2 * v0 - v1 + u * (v0 + v1 - 2 * delta)))
+        velocity = (v0 + u * (6 * delta - 4 * v0 - 2 * v1 + 3 * u * (v0 + v1 - 2 * delta))) / span
+        return position, velocity
+
+    def interval_at(self, time: float) -> Interval:
+        """The interval of a time [s], clipped to the trajectory's."""
+        for interval in self.intervals:
+            if time < interval.end:
+                return interval
+        return self.intervals[-1]
+
+    def moves_done(self, time: float) -> int:
+        """How many moves have been carried out at a time: their blocks have been let go."""
+        interval = self.interval_at(time)
+        if time >= self.duration and interval.phase.kind != HOME:
+            return interval.phase.move + 1
+        return interval.phase.move
+
+    def cut(self, start: float, end: float) -> Trajectory:
+        """The part between two times [s], starting at 0 again."""
+        inside = self.times[(self.times > start + 1e-3) & (self.times < end - 1e-3)]
+        times = np.concatenate([[start], inside, [end]])
+        positions, velocities = self.sample(times)
+        intervals = tuple(
+            Interval(max(i.start - start, 0.0), min(i.end, end) - start, i.phase, i.gripping)
+            for i in self.intervals
+            if i.end > start and i.start < end
+        )
+        return Trajectory(self.joint_names, times - start, positions, velocities, intervals)
+
+    def brake(self, start: float, seconds: float, step: float = 0.02) -> Trajectory:
+        """Comes to rest along the same path, which is known to be free, from a time on [s].
+
+        The path is followed ever more slowly, s(t) = start + t - t²/(2 seconds), but not beyond
+        the next switch; the fingers stay as they are at ``start``.
+        """
+        interval = self.interval_at(start)
+        count = max(2, int(np.ceil(seconds / step)) + 1)
+        times = np.linspace(0.0, seconds, count)
+        along = start + times - times**2 / (2 * seconds)
+        rate = np.where(along <= interval.end, 1 - times / seconds, 0.0)[:, None]
+        positions, velocities = self.sample(np.minimum(along, interval.end))
+        velocities = velocities * rate
+        arm = len(self.joint_names) - 2
+        positions[:, arm:], velocities[:, arm:] = positions[0, arm:], 0.0
+        return Trajectory(
+            self.joint_names,
+            times,
+            positions,
+            velocities,
+            (Interval(0.0, seconds, interval.phase, interval.gripping),),
+        )
