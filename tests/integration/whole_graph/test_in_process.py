@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The four nodes in one process build a real tower: pixels in, physics decides."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from tamp_interfaces.action import AchieveGoal
+from tamp_interfaces.msg import SceneGraph
+from tamp_runtime.conversions import graph_from_message
+from tamp_runtime.qos import LATCHED
+
+from motion_node.node import MotionNode
+from perception_node.node import PerceptionNode
+from planner_node.client import PlannerClient
+from planner_node.node import PlannerNode
+from sim_node.node import SimNode
+
+LAYOUT = ["red_box,blue_box", "", "green_box"]
+
+
+class Judge(Node):
+    """Reads the ground truth, which the nodes under test must not."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("judge", **kwargs)
+        self.truth: SceneGraph | None = None
+        self.create_subscription(SceneGraph, "sim/ground_truth", self._on_truth, LATCHED)
+
+    def _on_truth(self, message: SceneGraph) -> None:
+        self.truth = message
+
+    def stacks(self) -> Any:
+        return graph_from_message(self.truth).stacks() if self.truth else None
+
+
+@pytest.fixture
+def judge(ros_context: Any) -> Judge:
+    context = ros_context.context
+    follow_clock = [Parameter("use_sim_time", value=True)]
+    ros_context.add(
+        SimNode(context=context, parameter_overrides=[Parameter("layout", value=LAYOUT)])
+    )
+    for kind in (PerceptionNode, PlannerNode, MotionNode):
+        ros_context.add(kind(context=context, parameter_overrides=follow_clock))
+    judge = ros_context.add(Judge(context=context))
+    ros_context.wait_until(judge.stacks, what="ground truth")
+    return judge
+
+
+@pytest.mark.timeout(240)
+def test_the_graph_builds_a_tower_that_the_simulator_confirms(
+    ros_context: Any, judge: Judge
+) -> None:
+    with PlannerClient(context=ros_context.context) as planner:
+        planner.start("red on green", timeout=30.0)
+        result = planner.result(timeout=200.0)
+        assert result.status == AchieveGoal.Result.SUCCESS, result.message
+        assert judge.stacks()[2][:2] == ("green_box", "red_box")
+        assert result.moves_planned == 2  # the shortest plan: blue away, red over
+        assert result.moves_executed >= 2
+        # The same goal again is true already: nothing moves.
+        planner.start("red on green", timeout=30.0)
+        again = planner.result(timeout=60.0)
+        assert again.status == AchieveGoal.Result.ALREADY_TRUE
+        assert again.moves_executed == 0
+
+
+def test_only_evaluation_reads_the_ground_truth(judge: Judge) -> None:
+    readers = judge.get_subscriptions_info_by_topic("/sim/ground_truth")
+    assert [reader.node_name for reader in readers] == ["judge"]
