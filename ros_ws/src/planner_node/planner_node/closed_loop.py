@@ -12,7 +12,7 @@ from tamp_interfaces.msg import MotionStatus, SymbolicPlan
 
 from scene_graph import format_stacks
 
-from .conversions import Scene, nanoseconds, predicted_scenes, status_code
+from .conversions import Scene, predicted_scenes, status_code
 from .errors import (
     CancelledError,
     MotionBusyError,
@@ -93,21 +93,18 @@ class ClosedLoop:
             reason = self._judge(end, infeasible)
             infeasible = end.state == MotionStatus.FAILED and end.reason == MotionStatus.INFEASIBLE
             scene = self._look(
-                Feedback.CONFIRMING,
-                reason or "looking whether the goal is reached",
-                nanoseconds(end.header.stamp) or self._motion.last_end,
+                Feedback.CONFIRMING, reason or "looking whether the goal is reached", goal.names
             )
         seen = format_stacks(scene.stacks)
         if not plans:
             return AchieveGoal.Result.ALREADY_TRUE, f"nothing to do: '{goal}' holds in {seen}"
         return AchieveGoal.Result.SUCCESS, f"the camera confirms '{goal}': {seen}"
 
-    def _look(self, stage: int, message: str, after: int | None = None) -> Scene:
+    def _look(self, stage: int, message: str, needed: frozenset[str] = frozenset()) -> Scene:
+        """The scene after the last motion, with the ``needed`` objects in it."""
         self._tell(stage, message)
         with self._timed("perceive_seconds"):
-            scene = self._scenes.wait(
-                self._cancelled, self._motion.last_end if after is None else after
-            )
+            scene = self._scenes.wait(self._cancelled, self._motion.last_end, needed)
         self.result.final = scene.message
         return scene
 
@@ -161,7 +158,7 @@ class ClosedLoop:
         try:
             end = self._motion.follow(self._on_status, self._shut_down)
         except MotionSilentError as error:
-            if self._motion.was_taken_up():
+            if error.taken_up:
                 raise
             raise CancelledError(f"cancelled before anything moved; {error}") from error
         moved = f"{self._feedback.motion.moves_done} of {len(plan.moves)} moves were carried out"

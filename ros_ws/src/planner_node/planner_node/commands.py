@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 import time
 from collections.abc import Sequence
@@ -30,6 +31,8 @@ from .progress import ProgressPrinter
 SUCCEEDED: Final = (PlanToGoal.Response.SUCCESS, PlanToGoal.Response.ALREADY_TRUE)
 EXIT_FAILED: Final = 1
 EXIT_CANCELLED: Final = 130
+#: How long the planner may take to answer [s].
+ANSWER_TIMEOUT: Final = 10.0
 #: How long a cancelled motion may take until it rests [s].
 CANCEL_TIMEOUT: Final = 60.0
 
@@ -37,7 +40,7 @@ CANCEL_TIMEOUT: Final = 60.0
 def plan_to_goal(arguments: Sequence[str] | None = None) -> int:
     """Prints a plan; the exit code is 0 if there is one, or nothing needs to be done."""
     arguments = sys.argv if arguments is None else arguments
-    parser = _parser("plan_to_goal", "Plans from what the camera sees to a goal.", 10.0)
+    parser = _parser("plan_to_goal", "Plans from what the camera sees to a goal.", ANSWER_TIMEOUT)
     parser.add_argument("--execute", action="store_true", help="also have the plan carried out")
     options = parser.parse_args(remove_ros_args(arguments)[1:])
     image, segmentation = _read_images(parser, options)
@@ -45,7 +48,7 @@ def plan_to_goal(arguments: Sequence[str] | None = None) -> int:
     try:
         with PlannerClient() as planner:
             answer = planner.plan(
-                options.goal,
+                options.goal or "",
                 goal_image=image,
                 goal_segmentation=segmentation,
                 execute=options.execute,
@@ -77,8 +80,13 @@ def achieve_goal(arguments: Sequence[str] | None = None) -> int:
     _init(arguments)
     try:
         with PlannerClient() as planner:
+            planner.start(
+                options.goal or "",
+                goal_image=image,
+                goal_segmentation=segmentation,
+                timeout=min(ANSWER_TIMEOUT, options.timeout),
+            )
             try:
-                planner.start(options.goal, goal_image=image, goal_segmentation=segmentation)
                 if _follow(planner, options.timeout):
                     return _report(planner.result(timeout=1.0))
                 print(f"achieve_goal: not done after {options.timeout:g} s", file=sys.stderr)
@@ -89,7 +97,7 @@ def achieve_goal(arguments: Sequence[str] | None = None) -> int:
         print(f"achieve_goal: {error}", file=sys.stderr)
         return EXIT_FAILED
     except KeyboardInterrupt:
-        print("achieve_goal: not waiting for the arm to rest", file=sys.stderr)
+        print("achieve_goal: interrupted, not waiting for an answer", file=sys.stderr)
         return EXIT_CANCELLED
     finally:
         rclpy.try_shutdown()
@@ -107,9 +115,9 @@ def _parser(name: str, description: str, timeout: float) -> argparse.ArgumentPar
     parser = argparse.ArgumentParser(
         prog=name,
         description=description,
-        epilog="Without a goal text, a goal image and its segmentation say what is wanted.",
+        epilog="Give a goal text, or a goal image with its segmentation.",
     )
-    parser.add_argument("goal", nargs="?", default="", help="such as 'red on blue'")
+    parser.add_argument("goal", nargs="?", help="such as 'red on blue'")
     parser.add_argument("--timeout", type=float, default=timeout, help="[s], default %(default)s")
     parser.add_argument("--goal-image", type=Path, metavar="PNG", help="an RGB image")
     parser.add_argument(
@@ -126,6 +134,8 @@ def _read_images(
     if (paths[0] is None) != (paths[1] is None):
         parser.error("--goal-image and --goal-segmentation belong together")
     if paths[0] is None:
+        if options.goal is None:
+            parser.error("give a goal, such as 'red on blue'")
         return None, None
     try:
         with PngImage.open(paths[0]) as image, PngImage.open(paths[1]) as labels:
@@ -143,7 +153,9 @@ def _read_images(
 
 def _init(arguments: Sequence[str]) -> None:
     keep_discovery_on_this_host()
-    # Ctrl-C must reach this program as KeyboardInterrupt: it still has a goal to cancel.
+    # Ctrl-C must reach this program as KeyboardInterrupt, even where a shell starts it with SIGINT
+    # ignored: it still has a goal to cancel.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
 
 

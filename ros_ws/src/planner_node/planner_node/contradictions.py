@@ -37,8 +37,8 @@ def find_contradiction(relations: Iterable[GoalRelation], stack_count: int) -> s
             return problem
     return (
         _two_at_one_place(relations)
-        or _impossible_order(relations)
         or _impossible_columns(relations, stack_count)
+        or _impossible_order(relations)
     )
 
 
@@ -75,7 +75,7 @@ def _impossible_order(relations: tuple[GoalRelation, ...]) -> str | None:
     above = on | {(item.subject, item.object) for item in relations if item.predicate == ABOVE}
     stack_of = _stacks_of(relations)
     while True:
-        derived = {(a, d) for a, b in above for c, d in above if b == c}
+        derived = _joined(above)
         for upper, lower in on:
             # Nothing fits in between: what is above the lower one is above the upper one too,
             # and what the upper one is above, the lower one is above too.
@@ -91,10 +91,11 @@ def _impossible_order(relations: tuple[GoalRelation, ...]) -> str | None:
             break
         above |= derived
     for upper, lower in sorted(above):
-        if upper == lower:
-            return f"{upper} would have to be above itself"
         if base_index(upper) is not None:
             return f"{lower} would have to be below {upper}, the lowest place of its stack"
+    for upper, lower in sorted(above):
+        if upper == lower:
+            return f"{upper} would have to be above itself"
     return None
 
 
@@ -113,12 +114,19 @@ def _impossible_columns(relations: tuple[GoalRelation, ...], stack_count: int) -
         base_of[stack] = name
         low[stack] = high[stack] = index
     lefts = [item for item in relations if item.predicate == LEFT_OF]
-    # Without a contradiction no bound moves more often than there are stacks.
-    for _ in range(len(low) + 1):
+    for item in lefts:
+        if stack_of[item.subject] == stack_of[item.object]:
+            return f"{item.subject} and {item.object} would have to be in one stack and apart"
+    order = {(stack_of[item.subject], stack_of[item.object]) for item in lefts}
+    while not (more := _joined(order)) <= order:
+        order |= more
+    for item in lefts:
+        if (stack_of[item.subject], stack_of[item.subject]) in order:
+            return f"{item.subject} would have to be left of itself"
+    # Along the longest chain every round settles the bounds of one more stack.
+    for _ in low:
         for item in lefts:
             left, right = stack_of[item.subject], stack_of[item.object]
-            if left == right:
-                return f"{item.subject} and {item.object} would have to be in one stack and apart"
             low[right] = max(low[right], low[left] + 1)
             high[left] = min(high[left], high[right] - 1)
             if low[right] > high[right] or low[left] > high[left]:
@@ -127,6 +135,11 @@ def _impossible_columns(relations: tuple[GoalRelation, ...], stack_count: int) -
                     f"there are only {stack_count} stacks"
                 )
     return None
+
+
+def _joined(pairs: set[tuple[str, str]]) -> set[tuple[str, str]]:
+    """All (a, d) with (a, b) and (b, d) among the pairs."""
+    return {(a, d) for a, b in pairs for c, d in pairs if b == c}
 
 
 def _stacks_of(relations: tuple[GoalRelation, ...]) -> dict[str, str]:

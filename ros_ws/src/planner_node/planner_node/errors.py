@@ -163,10 +163,15 @@ class MotionBusyError(BusyError):
 
 
 class MotionSilentError(PlannerError):
-    """The motion node does not answer."""
+    """The motion node does not answer about ``plan_id``; ``taken_up``: it did so before."""
 
     status = "MOTION_SILENT"
     module = "motion"
+
+    def __init__(self, problem: str, plan_id: str, taken_up: bool) -> None:
+        super().__init__(problem)
+        self.plan_id = plan_id
+        self.taken_up = taken_up
 
 
 class TooManyReplansError(PlannerError):

@@ -69,7 +69,9 @@ class MotionLink:
     def receive(self, status: MotionStatus) -> None:
         with self._changed:
             if status.state in ENDED:
-                self._last_end = nanoseconds(status.header.stamp) or self._now()
+                # A stamp in the future is of another clock, and would make every image look old.
+                now = self._now()
+                self._last_end = min(nanoseconds(status.header.stamp) or now, now)
             execution = self._execution
             ours = execution is not None and status.plan_id == execution.plan_id
             if status.state in RUNNING:
@@ -93,8 +95,9 @@ class MotionLink:
     def check_free(self) -> None:
         """Raises MotionBusyError while a plan is being carried out, whoever asked for it."""
         with self._changed:
+            self._give_up_if_silent()
             execution, foreign = self._execution, self._foreign
-            if execution and execution.outcome is None and not self._silence(execution):
+            if execution and execution.outcome is None:
                 raise MotionBusyError(
                     f"plan {execution.plan_id} is being carried out "
                     f"({self._state(execution.status)}); wait until it ends",
@@ -102,8 +105,8 @@ class MotionLink:
                 )
             if foreign and time.monotonic() < foreign.heard + self._settings.motion_silence_timeout:
                 raise MotionBusyError(
-                    f"the motion node carries out plan {foreign.status.plan_id}, which is not of "
-                    f"this planner ({self._state(foreign.status)}); wait until it ends",
+                    f"the motion node carries out plan {foreign.status.plan_id}, which this "
+                    f"planner does not follow ({self._state(foreign.status)}); wait until it ends",
                     foreign.status.plan_id,
                 )
 
@@ -147,23 +150,30 @@ class MotionLink:
                 news = execution.status if execution.updates > told else None
                 told = execution.updates
                 outcome = execution.outcome
-                silence = "" if outcome else self._silence(execution)
+                silence = self._give_up_if_silent()
             if news is not None:
                 on_status(news)
             if outcome:
                 return outcome
+            if silence:
+                raise MotionSilentError(silence, execution.plan_id, execution.status is not None)
             if stopped():
                 return None
-            if silence:
-                raise MotionSilentError(silence)
 
-    def was_taken_up(self) -> bool:
-        """Whether the motion node has answered to the started plan."""
-        with self._changed:
-            return self._execution is not None and self._execution.status is not None
+    def _give_up_if_silent(self) -> str:
+        """A sentence if the motion node is silent about the plan, otherwise an empty string.
+
+        What it reports on the plan later counts like a report on anybody's plan.
+        """
+        execution = self._execution
+        if execution is None or execution.outcome is not None:
+            return ""
+        silence = self._silence(execution)
+        if silence:
+            self._execution = None
+        return silence
 
     def _silence(self, execution: _Execution) -> str:
-        """A sentence if the motion node is silent about a plan, otherwise an empty string."""
         if execution.lost:
             return (
                 f"the motion node has lost plan {execution.plan_id}; was it restarted? "

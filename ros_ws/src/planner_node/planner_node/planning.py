@@ -8,7 +8,6 @@ from collections.abc import Callable
 from scene_graph import Stacks
 
 from .contradictions import check_contradictions
-from .errors import ObjectLostError
 from .goals import Goal
 from .search import DEFAULT_MAX_EXPANSIONS, SearchResult, search
 
@@ -23,11 +22,7 @@ def make_plan(
 
     Raises:
         ContradictoryGoalError: the goal's relations exclude one another.
-        ObjectLostError: an object of the goal is not in the state.
         UnreachableError, SearchLimitError, SearchCancelledError: see the search.
     """
     check_contradictions(goal, len(initial))
-    names = {name for stack in initial for name in stack}
-    if missing := sorted(goal.names - names):
-        raise ObjectLostError(missing, sorted(names))
     return search(initial, goal, max_expansions, cancelled)

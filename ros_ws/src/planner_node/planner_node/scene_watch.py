@@ -11,7 +11,7 @@ from typing import Final
 from tamp_interfaces.msg import SceneGraph
 
 from .conversions import Scene, nanoseconds, scene_from_message
-from .errors import CancelledError, NoSceneGraphError, NotConfidentError, PlannerError
+from .errors import CancelledError, NoSceneGraphError, NotConfidentError, ObjectLostError
 from .settings import Settings
 
 #: Longest time that a request to cancel stays unnoticed while waiting [s].
@@ -36,12 +36,17 @@ class SceneWatch:
             self._newest = message
             self._arrived.notify_all()
 
-    def latest(self, after: int = 0) -> Scene:
-        """The newest scene, if it can be planned on and was taken after the time ``after`` [ns].
+    def latest(self, after: int = 0, needed: frozenset[str] = frozenset()) -> Scene:
+        """The newest scene, if it can be planned on.
+
+        Args:
+            after: it has to be taken after this time [ns].
+            needed: objects that have to be in it.
 
         Raises:
             NoSceneGraphError: none has arrived.
             NotConfidentError: it cannot be trusted; the sentence says why.
+            ObjectLostError: a needed object is not in it.
         """
         with self._arrived:
             message = self._newest
@@ -50,27 +55,33 @@ class SceneWatch:
                 "no scene graph has arrived; are the camera (sim_node) and perception_node running?"
             )
         self._check_time(nanoseconds(message.header.stamp), after)
-        return scene_from_message(message, self._settings.min_confidence)
+        scene = scene_from_message(message, self._settings.min_confidence)
+        if missing := sorted(needed - set(scene.names)):
+            raise ObjectLostError(missing, scene.names)
+        return scene
 
-    def wait(self, cancelled: Callable[[], bool], after: int = 0) -> Scene:
+    def wait(
+        self,
+        cancelled: Callable[[], bool],
+        after: int = 0,
+        needed: frozenset[str] = frozenset(),
+    ) -> Scene:
         """Like :meth:`latest`, but waits up to ``perceive_timeout`` for such a scene.
 
         Raises:
-            NoSceneGraphError, NotConfidentError: what was wrong when the time was over.
+            NoSceneGraphError, NotConfidentError, ObjectLostError: what was wrong when the time was
+                over.
             CancelledError: ``cancelled`` returned True.
         """
-        waited = self._settings.perceive_timeout
-        deadline = time.monotonic() + waited
+        deadline = time.monotonic() + self._settings.perceive_timeout
         while True:
             if cancelled():
                 raise CancelledError("cancelled while waiting for a scene graph")
-            problem: PlannerError
             try:
-                return self.latest(after)
-            except (NoSceneGraphError, NotConfidentError) as error:
-                problem = error
-            if time.monotonic() >= deadline:
-                raise type(problem)(f"{problem} (waited {waited:g} s)")
+                return self.latest(after, needed)
+            except (NoSceneGraphError, NotConfidentError, ObjectLostError):
+                if time.monotonic() >= deadline:
+                    raise
             with self._arrived:
                 self._arrived.wait(POLL_SECONDS)
 

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nodes spun in process, each test in a context of its own."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from typing import TypeVar
+
+import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.node import Node
+
+os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
+
+AnyNode = TypeVar("AnyNode", bound=Node)
+
+#: The ids that need no ports beyond the usual range are 0 to 101; 0 is everybody's.
+DOMAIN_ID = int(os.environ.get("ROS_DOMAIN_ID") or 0) or 1 + os.getpid() % 100
+
+
+class RosContext:
+    """A context, and an executor in a thread that spins what is added.
+
+    Attributes:
+        context: give it to nodes: ``ros_context.add(MyNode(context=ros_context.context))``.
+        domain_id: for processes that shall meet the nodes: the environment's ``ROS_DOMAIN_ID``.
+    """
+
+    def __init__(self) -> None:
+        self.domain_id = DOMAIN_ID
+        self.context = Context()
+        rclpy.init(context=self.context, domain_id=DOMAIN_ID)
+        self._executor = MultiThreadedExecutor(num_threads=8, context=self.context)
+        self._nodes: list[Node] = []
+        self._errors: list[Exception] = []
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._spin)
+        self._thread.start()
+
+    def add(self, node: AnyNode) -> AnyNode:
+        """Spins a node until the test ends."""
+        self._nodes.append(node)
+        self._executor.add_node(node)
+        return node
+
+    def remove(self, node: Node) -> None:
+        """Destroys a node before the test ends; none of its callbacks may be running."""
+        self._executor.remove_node(node)
+        self._nodes.remove(node)
+        node.destroy_node()
+
+    @staticmethod
+    def wait_until(condition: Callable[[], object], timeout: float = 10.0, what: str = "") -> None:
+        """Returns as soon as a condition is true, fails the test if that takes longer [s]."""
+        deadline = time.monotonic() + timeout
+        while not condition():
+            assert time.monotonic() < deadline, f"not within {timeout:g} s: {what or condition}"
+            time.sleep(0.01)
+
+    def close(self) -> None:
+        self._stopping.set()
+        self._thread.join()
+        # Callbacks that still wait for something see that the context is gone.
+        self.context.try_shutdown()
+        # Executor.shutdown of rclpy 7.1.6 does not wait for callbacks that run; a node must not
+        # be destroyed under one.
+        workers: ThreadPoolExecutor = self._executor._executor
+        workers.shutdown(wait=True)
+        self._executor.shutdown()
+        for node in reversed(self._nodes):
+            node.destroy_node()
+        assert not self._errors, f"a callback raised: {self._errors}"
+
+    def _spin(self) -> None:
+        while not self._stopping.is_set():
+            try:
+                self._executor.spin_once(timeout_sec=0.05)
+            except ExternalShutdownException:
+                return
+            except Exception as error:
+                self._errors.append(error)
+
+
+@pytest.fixture
+def ros_context() -> Iterator[RosContext]:
+    """See :class:`RosContext`; the test fails if a callback of a node raises."""
+    ros = RosContext()
+    try:
+        yield ros
+    finally:
+        ros.close()
