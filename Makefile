@@ -7,7 +7,7 @@ VENV := .venv
 RUN := tools/in_workspace
 SOURCES := $(shell find ros_ws/src -name '*.py' -o -name 'package.xml' -o -name 'setup.cfg' 2>/dev/null)
 
-.PHONY: help setup demo test lint clean lock train-visual eval-visual eval-tasks results
+.PHONY: help setup demo test lint lint-docker clean lock train-visual eval-visual eval-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -19,10 +19,13 @@ demo: setup  ## build a tower; SEED= BLOCKS= GOAL= OUT= RTF=
 	@$(RUN) ros2 run tamp_bringup demo $(if $(SEED),--seed $(SEED)) $(if $(BLOCKS),--blocks $(BLOCKS)) \
 	  $(if $(GOAL),--goal "$(GOAL)") $(if $(OUT),--out "$(OUT)") $(if $(RTF),--real-time-factor $(RTF))
 
-lint: setup  ## ruff and mypy
+lint: setup lint-docker  ## ruff, mypy and hadolint
 	@$(VENV)/bin/ruff check .
 	@$(VENV)/bin/ruff format --check .
 	@$(RUN) mypy
+
+lint-docker: setup  ## hadolint on the Dockerfile; nothing is built
+	@$(VENV)/bin/hadolint docker/Dockerfile
 
 test: setup  ## the whole test suite
 	@$(RUN) pytest $(ARGS)
@@ -40,6 +43,9 @@ eval-tasks: setup  ## success from pixels to tower; N= BLOCKS= RESUME=1 QUICK=1
 
 results: setup  ## docs/results.md from the result files
 	@$(RUN) python benchmarks/write_results_page.py
+
+reference: setup  ## docs/parameters.md and docs/interfaces.md from the sources
+	@$(RUN) python tools/write_reference.py
 
 lock:  ## compile requirements.in to the hash-pinned requirements.lock
 	@tools/lock
