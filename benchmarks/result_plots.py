@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Plots of the results page, drawn from the details of a result file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+#: What the machine does before the arm moves; the rest of a task is execution.
+THINKING: Final = ("perceive", "plan", "motion")
+_COLORS: Final = {"perceive": "#4c72b0", "plan": "#dd8452", "motion": "#8172b3"}
+_SUCCEEDED: Final = "#55a868"
+_FAILED: Final = "#c44e52"
+
+
+def plot_result(result: Mapping[str, Any], folder: Path) -> list[Path]:
+    """Draws what a result file has details for; equal results give equal files.
+
+    Returns:
+        The files written: ``NAME.svg`` where the details list tasks, else none.
+    """
+    tasks = (result.get("details") or {}).get("tasks")
+    if not tasks:
+        return []
+    figure = draw_tasks(tasks)
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{result['name']}.svg"
+    # Without date and with fixed identifiers, so that an unchanged result is an unchanged file.
+    with matplotlib.rc_context({"svg.hashsalt": result["name"]}):
+        figure.savefig(path, metadata={"Date": None})
+    return [path]
+
+
+def draw_tasks(tasks: Sequence[Mapping[str, Any]]) -> Figure:
+    """One bar a task: seconds of thinking above, seconds of execution and success below."""
+    width = min(12.0, max(6.0, 2.0 + 0.3 * len(tasks)))
+    figure = Figure(figsize=(width, 5.0), layout="constrained")
+    above, below = figure.subplots(2, 1, sharex=True)
+    _draw_thinking(above, tasks)
+    _draw_execution(below, tasks)
+    return figure
+
+
+def _draw_thinking(axes: Axes, tasks: Sequence[Mapping[str, Any]]) -> None:
+    places = range(len(tasks))
+    bottoms = [0.0] * len(tasks)
+    for stage in THINKING:
+        seconds = [task["timing_s"][stage] for task in tasks]
+        axes.bar(places, seconds, bottom=bottoms, color=_COLORS[stage], label=stage)
+        bottoms = [low + high for low, high in zip(bottoms, seconds)]
+    axes.set_ylabel("seconds before\nthe arm moves")
+    axes.legend(ncols=len(THINKING), loc="lower right", bbox_to_anchor=(1.0, 1.0), frameon=False)
+
+
+def _draw_execution(axes: Axes, tasks: Sequence[Mapping[str, Any]]) -> None:
+    places = range(len(tasks))
+    bars = axes.bar(
+        places,
+        [task["timing_s"]["execute"] for task in tasks],
+        color=[_SUCCEEDED if task["success"] else _FAILED for task in tasks],
+    )
+    axes.bar_label(bars, [str(task["moves_executed"]) for task in tasks], fontsize=7)
+    axes.set_ylabel("seconds of execution\n(label: moves)")
+    axes.set_xticks(list(places), [str(task["seed"]) for task in tasks], rotation=90, fontsize=7)
+    axes.set_xlabel("seed of the task")
+    axes.margins(y=0.15)
+    axes.legend(
+        handles=[Patch(color=_SUCCEEDED, label="success"), Patch(color=_FAILED, label="failure")],
+        ncols=2,
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        frameon=False,
+    )

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``make results``: docs/results.md, tables and plots, from the result files of the benchmarks."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from result_plots import plot_result
+from results_file import RESULTS_FOLDER
+
+PAGE: Final = Path(__file__).resolve().parent.parent / "docs" / "results.md"
+
+_HEAD: Final = """\
+<!-- Written by `make results` from benchmarks/results/*.json; nothing here is typed by hand. -->
+
+# Results
+
+Each section is one result file, with the command that regenerates it. *Required* is the bound that
+the work was asked to hold, *thesis* the thesis' number for the same thing, *spread* an interval or
+the extremes, *n* the number of cases behind a value."""
+
+_VERDICTS: Final[Mapping[bool | None, str]] = {None: "", True: "yes", False: "**no**"}
+
+
+class ResultFileError(ValueError):
+    """A result file that cannot be published; ``path`` names it."""
+
+    def __init__(self, path: Path, problem: str) -> None:
+        super().__init__(f"{path}: {problem}")
+        self.path = path
+
+
+def load_results(folder: Path) -> list[dict[str, Any]]:
+    """The contents of the result files, sorted by file name; quick runs are left out.
+
+    Raises:
+        ResultFileError: for a file that is no result, or a quick run under the name of a full one.
+    """
+    results = []
+    for path in sorted(folder.glob("*.json")):
+        if path.name.endswith(".quick.json"):
+            continue
+        try:
+            result = json.loads(path.read_text())
+        except ValueError as error:
+            raise ResultFileError(path, f"is not JSON: {error}") from error
+        missing = {"name", "command", "commit", "date", "machine", "rows"} - set(result)
+        if missing:
+            raise ResultFileError(path, f"lacks {', '.join(sorted(missing))}")
+        if result.get("quick"):
+            raise ResultFileError(path, "is a quick run; repeat it without QUICK=1")
+        results.append(result)
+    return results
+
+
+def summary(results: Sequence[Mapping[str, Any]]) -> str:
+    """How many of the required bounds hold, and which do not."""
+    bounded = [
+        (result["name"], row)
+        for result in results
+        for row in result["rows"]
+        if row["holds"] is not None
+    ]
+    if not bounded:
+        return "No required bound has been measured yet."
+    short = [(name, row) for name, row in bounded if not row["holds"]]
+    lines = [f"{len(bounded) - len(short)} of {len(bounded)} required bounds hold."]
+    if short:
+        lines += ["These do not:", ""]
+        lines += [
+            f"- {name}: {row['metric']} ({row['set']}) is {_number(row['value'])}{_unit(row)}, "
+            f"required {row['required']}"
+            for name, row in short
+        ]
+    return "\n".join(lines)
+
+
+def table(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """A Markdown table of the rows of one file, in their order."""
+    lines = [
+        "| set | metric | value | unit | n | spread | required | holds | thesis | note |",
+        "|---|---|---:|---|---:|---|---|---|---:|---|",
+    ]
+    for row in rows:
+        spread = row.get("spread")
+        thesis = row.get("thesis")
+        cells = (
+            row["set"],
+            row["metric"],
+            _number(row["value"]),
+            row["unit"],
+            str(row["n"]),
+            f"{_number(spread[0])} to {_number(spread[1])}" if spread else "",
+            row["required"] or "",
+            _VERDICTS[row["holds"]],
+            "" if thesis is None else _number(thesis),
+            row.get("note") or "",
+        )
+        lines.append("| " + " | ".join(_cell(cell) for cell in cells) + " |")
+    return lines
+
+
+def section(result: Mapping[str, Any], plots: Sequence[str]) -> list[str]:
+    """The section of one result file; ``plots`` are addresses relative to the page."""
+    machine = result["machine"]
+    origin = [
+        f"commit {result['commit']}",
+        result["date"],
+        f"{machine['cpu']}, {machine['cores']} cores, {machine['memory_gib']} GiB",
+    ]
+    if "seconds" in result:
+        origin.append(f"took {_duration(result['seconds'])}")
+    lines = [
+        f"## {result['name']}",
+        "",
+        f"`{result['command']}` · {' · '.join(origin)}",
+        "",
+        *table(result["rows"]),
+    ]
+    for plot in plots:
+        lines += ["", f"![{result['name']}]({plot})"]
+    return lines
+
+
+def write_page(results_folder: Path, page: Path) -> None:
+    """Writes the page, and its plots into a folder beside it that has the page's name.
+
+    Raises:
+        ResultFileError: see :func:`load_results`; nothing is written then.
+    """
+    results = load_results(results_folder)
+    plot_folder = page.with_suffix("")
+    page.parent.mkdir(parents=True, exist_ok=True)
+    written: set[Path] = set()
+    lines = [_HEAD, "", summary(results)]
+    for result in results:
+        plots = plot_result(result, plot_folder)
+        written.update(plots)
+        addresses = [plot.relative_to(page.parent).as_posix() for plot in plots]
+        lines += ["", *section(result, addresses)]
+    for plot in set(plot_folder.glob("*.svg")) - written:  # of results that are no more
+        plot.unlink()
+    page.write_text("\n".join(lines) + "\n")
+
+
+def _number(value: float) -> str:
+    return str(value) if isinstance(value, int) else f"{value:.4g}"
+
+
+def _unit(row: Mapping[str, Any]) -> str:
+    return f" {row['unit']}" if row["unit"] else ""
+
+
+def _duration(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 120.0 else f"{seconds / 60.0:.0f} min"
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|").replace("\n", " ")
+
+
+def main() -> int:
+    try:
+        write_page(RESULTS_FOLDER, PAGE)
+    except ResultFileError as error:
+        print(f"results: {error}", file=sys.stderr)
+        return 1
+    print(f"written {PAGE}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
