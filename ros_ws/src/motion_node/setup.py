@@ -17,7 +17,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            # executables, where ros2 run finds them
+            "motion_node = motion_node.node:main",
         ]
     },
 )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+
 from scene_graph import BOX, SceneObject
 
 from .errors import InvalidPlanError

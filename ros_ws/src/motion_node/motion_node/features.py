@@ -26,6 +26,7 @@ from typing import Final
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+
 from scene_graph import base_name
 
 from .kinematics import Kinematics
@@ -98,7 +99,10 @@ class _PosedBox:
     ) -> _PosedBox:
         moved = position + rotation @ center
         # Support function of a box along a world axis: sum_j |R_ij| half_j.
-        extent = [sum(_smooth_abs(rotation[i, j]) * half[j] for j in range(3)) for i in range(3)]
+        extent = [
+            ca.sum1(ca.vertcat(*[_smooth_abs(rotation[i, j]) * half[j] for j in range(3)]))
+            for i in range(3)
+        ]
         axis = [rotation[i, across] for i in range(3)]
         return _PosedBox([moved[i] for i in range(3)], extent, axis, half[across])
 
@@ -217,8 +221,7 @@ class Features:
 
     @cached_property
     def pose(self) -> ca.Function:
-        """q -> residual (7,) and its Jacobian (7, n), for :mod:`inverse_kinematics`: the tool centre
-        point, lean of the hand along x and y, and the fingers' direction along x and y."""
+        """q -> residual (7,) and its Jacobian (7, n), for :mod:`inverse_kinematics`: tool centre point, lean of the hand along x and y, and the fingers' direction along x and y."""
         rotation, position = self._poses[self.robot.hand_link]
         point = position + rotation[:, 2] * self.robot.tcp_offset
         residual = ca.vertcat(point, rotation[0, 2], rotation[1, 2], rotation[0, 1], rotation[1, 1])

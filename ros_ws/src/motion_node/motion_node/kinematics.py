@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""URDF text to forward kinematics, symbolic in CasADi, so that one description serves all bounds."""
+"""URDF text to forward kinematics, symbolic in CasADi: one description for all bounds."""
 
 from __future__ import annotations
 

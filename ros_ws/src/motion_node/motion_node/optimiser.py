@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+
 from scene_graph import Move, SceneGraph
 
 from .errors import POSE, CancelledError, InfeasibleError
@@ -83,6 +84,8 @@ class MotionOptimiser:
         self.upper = self.kinematics.upper - margin
         self.home = np.array(robot.home)
         self.limits = JointLimits(self.kinematics.velocity, np.array(robot.acceleration))
+        #: May be changed between plans.
+        self.timing = self.settings.timing
         self._bounds: dict[int, tuple[Keyframes, PathProblem]] = {}
 
     def prepare(self, stacks: int, moves: int = 0) -> tuple[Keyframes, PathProblem]:
@@ -181,6 +184,6 @@ class MotionOptimiser:
         check()
         names = self.robot.arm_joints + self.robot.finger_joints
         trajectory = time_paths(
-            paths, names, self.limits, self.settings.timing, fingers, self.robot.finger_travel
+            paths, names, self.limits, self.timing, fingers, self.robot.finger_travel
         )
         return Motion(tuple(phases), tuple(paths), trajectory, floor, time.perf_counter() - begin)

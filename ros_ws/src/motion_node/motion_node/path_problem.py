@@ -13,7 +13,6 @@ Each phase has ``steps`` intervals. The hand moves vertically during the first a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,7 +23,7 @@ from .features import LEAN_ROWS, SMOOTHING, SWITCH_ROWS, Features
 from .inverse_kinematics import InverseKinematics
 from .k_order import Attached, Bounds, DifferenceCost, KOrderProblem, Solution
 from .keyframes import Clearances, lowered
-from .phases import Column, Phase, Switch, Tool
+from .phases import Column, Phase, Switch
 
 Array = NDArray[np.float64]
 

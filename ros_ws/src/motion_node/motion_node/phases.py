@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
+
 from scene_graph import Base, Move, SceneGraph, SceneGraphError, base_name
 
 from .blocks import Block, Grasp, block_from_object, grasps, placed

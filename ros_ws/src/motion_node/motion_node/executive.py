@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Carries one plan out: optimise, send the trajectory, watch it, and end in an orderly way.
+
+Runs in a thread of its own and is written as it happens, from top to bottom. Whatever goes wrong
+on the way ends in a report; all waits have time limits.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from scene_graph import Move, SceneGraph
+
+from .arm_state import ArmState, ArmStateBox
+from .errors import CancelledError, InfeasibleError, InvalidPlanError
+from .following import ExecutionError, ExecutionSettings, Follower
+from .optimiser import Motion, MotionOptimiser
+from .phases import HOME, PICK
+from .report import Reason, Report, State
+from .trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A symbolic plan as the executive needs it."""
+
+    plan_id: str
+    graph: SceneGraph
+    moves: tuple[Move, ...]
+    object_names: tuple[str, ...]
+
+
+class Executive:
+    """Carries plans out, one at a time.
+
+    Args:
+        optimiser: the optimiser if there is one yet; it needs the robot description.
+        arm: where the arm's states arrive.
+        send: publishes a trajectory, which replaces the running one.
+        publish: publishes a report.
+        settings: asked for anew for each plan.
+    """
+
+    def __init__(
+        self,
+        optimiser: Callable[[], MotionOptimiser | None],
+        arm: ArmStateBox,
+        send: Callable[[Trajectory], None],
+        publish: Callable[[Report], None],
+        settings: Callable[[], ExecutionSettings],
+    ) -> None:
+        self._optimiser = optimiser
+        self._arm, self._send, self._publish = arm, send, publish
+        self._settings = settings
+        self._report = Report()
+
+    @property
+    def report(self) -> Report:
+        """The newest report, progress included; any thread may ask."""
+        return self._report
+
+    def carry_out(self, plan: Plan, stop: threading.Event) -> None:
+        """Carries out a plan; when it returns, its end has been published.
+
+        Args:
+            stop: set from another thread to end early, as SymbolicPlan describes.
+
+        Raises:
+            Exception: a defect, which has been reported as such.
+        """
+        self._report = Report(plan.plan_id, moves_total=len(plan.moves))
+        self._tell(State.OPTIMISING, f"optimising {len(plan.moves)} moves")
+        try:
+            self._optimise_and_run(plan, stop)
+        except CancelledError as error:
+            self._tell(State.CANCELLED, str(error))
+        except InvalidPlanError as error:
+            self._fail(
+                Reason.INVALID_PLAN,
+                str(error),
+                object_name=error.object_name,
+                move=max(error.move, 0),
+            )
+        except InfeasibleError as error:
+            self._fail(
+                Reason.INFEASIBLE,
+                str(error),
+                bound=error.bound,
+                object_name=error.object_name,
+                constraint=error.constraint,
+                move=min(error.move, max(len(plan.moves) - 1, 0)),
+                phase=error.phase,
+            )
+        except ExecutionError as error:
+            self._fail(error.reason, str(error))
+        except Exception as error:
+            self._fail(
+                Reason.INTERNAL_ERROR, f"a defect: {error!r}; the node's log has the traceback"
+            )
+            raise
+
+    def _optimise_and_run(self, plan: Plan, stop: threading.Event) -> None:
+        settings = self._settings()
+        follower = Follower(self._arm, self._send, settings)
+        optimiser = self._wait_for_optimiser(settings.description_timeout, stop)
+        state = follower.wait_for_rest(stop.is_set)
+        if state is None:
+            raise CancelledError("stopped on request before anything moved")
+        arm, fingers = state.positions[:-2], state.positions[-2:]
+        motion = optimiser.solve(
+            plan.graph, plan.moves, arm, fingers, plan.object_names, stop.is_set
+        )
+        self._tell(
+            State.EXECUTING,
+            "setting out",
+            optimisation_seconds=motion.seconds,
+            duration=motion.trajectory.duration,
+        )
+        self._run(motion, optimiser, follower, state, stop)
+
+    def _wait_for_optimiser(self, seconds: float, stop: threading.Event) -> MotionOptimiser:
+        deadline = time.monotonic() + seconds
+        while (optimiser := self._optimiser()) is None:
+            if stop.wait(0.05):
+                raise CancelledError("stopped on request before anything moved")
+            if time.monotonic() > deadline:
+                raise ExecutionError(
+                    Reason.NO_JOINT_STATES,
+                    "no usable robot_description arrives; is the arm's driver (or sim_node) "
+                    "running?",
+                )
+        return optimiser
+
+    def _run(
+        self,
+        motion: Motion,
+        optimiser: MotionOptimiser,
+        follower: Follower,
+        state: ArmState,
+        stop: threading.Event,
+    ) -> None:
+        try:
+            arrived = follower.follow(
+                motion.trajectory,
+                state,
+                self._tell_progress,
+                lambda: stop.is_set() and follower.empty_handed,
+            )
+        except ExecutionError as error:
+            if not error.recoverable:
+                raise
+            try:
+                self._go_home(motion, optimiser, follower, str(error))
+            except (ExecutionError, InfeasibleError) as second:
+                raise ExecutionError(
+                    error.reason, f"{error}; the arm could not go home: {second}"
+                ) from error
+            raise ExecutionError(error.reason, f"{error}; the arm is home") from error
+        if arrived:
+            total = self._report.moves_total
+            self._tell(
+                State.SUCCEEDED,
+                "every move was carried out and the arm is home",
+                moves_done=total,
+                progress=1.0,
+            )
+            return
+        self._go_home(motion, optimiser, follower, "stopped on request")
+        done, total = self._report.moves_done, self._report.moves_total
+        self._tell(
+            State.CANCELLED, f"stopped on request after {done} of {total} moves; the arm is home"
+        )
+
+    def _go_home(
+        self, motion: Motion, optimiser: MotionOptimiser, follower: Follower, why: str
+    ) -> None:
+        """Brakes, opens the fingers, rises, and goes home."""
+        phase = follower.interval.phase
+        moves_done = phase.move + 1 if follower.let_go else phase.move
+        self._tell(State.EXECUTING, f"{why}; going home", moves_done=moves_done, phase=HOME)
+        state = follower.brake()
+        home = optimiser.solve_way_home(
+            motion, moves_done, state.positions[:-2], state.positions[-2:]
+        )
+        follower.follow(home.trajectory, state)
+
+    # Reports
+
+    def _tell(self, state: State, message: str, **changes: Any) -> None:
+        self._report = replace(self._report, state=state, message=message, **changes)
+        self._publish(self._report)
+
+    def _fail(self, reason: Reason, message: str, **changes: Any) -> None:
+        self._tell(State.FAILED, message, reason=reason, **changes)
+
+    def _tell_progress(self, trajectory: Trajectory, at: float) -> None:
+        phase = trajectory.interval_at(at).phase
+        before = self._report
+        self._report = replace(
+            before,
+            move=min(phase.move, max(before.moves_total - 1, 0)),
+            moves_done=trajectory.moves_done(at),
+            phase=phase.kind,
+            object_name=phase.object_name,
+            progress=at / trajectory.duration,
+        )
+        if (before.phase, before.move) != (self._report.phase, self._report.move):
+            doing = {PICK: f"picking {phase.object_name}", HOME: "going home"}
+            self._tell(State.EXECUTING, doing.get(phase.kind, f"placing {phase.object_name}"))

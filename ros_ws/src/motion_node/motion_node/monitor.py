@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Watches from joint states how far a trajectory has been carried out, and whether all is well.
+
+When the arm begins is not known exactly: the trajectory travels, and a simulation may run faster
+or slower than this clock. So the trajectory's time is found from the arm itself: it starts when the
+arm leaves its first position, and follows where the arm is on the path, near where it should be.
+Only differences of the joint states' own stamps count; the speed of a simulation does not matter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .arm_state import ArmState
+from .trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+
+class Verdict(Enum):
+    """What the joint states say."""
+
+    GOING = auto()
+    ARRIVED = auto()
+    NOT_STARTED = auto()
+    OFF_THE_PATH = auto()
+    BEHIND = auto()
+    NOT_ARRIVED = auto()
+    GRASP_LOST = auto()
+    CLOCK_WENT_BACK = auto()
+
+
+@dataclass(frozen=True)
+class MonitorSettings:
+    """Tolerances of the execution; times by the joint states' stamps unless said otherwise.
+
+    Attributes:
+        tracking_tolerance: largest deviation of an arm joint from the path [rad].
+        tracking_seconds: for how long it may be exceeded [s].
+        max_lag: how far the arm may be behind the trajectory [s].
+        start_seconds: within which the arm has to start, in wall time and by stamps [s].
+        goal_tolerance: deviation of every arm joint at the end [rad].
+        settle_seconds: within which the end is to be reached after the trajectory's end [s].
+        grasp_tolerance: a finger this near to where it was sent holds nothing [m].
+        grasp_seconds: for how long the fingers must say so [s].
+    """
+
+    tracking_tolerance: float = 0.15
+    tracking_seconds: float = 0.3
+    max_lag: float = 2.0
+    start_seconds: float = 3.0
+    goal_tolerance: float = 0.02
+    settle_seconds: float = 3.0
+    grasp_tolerance: float = 0.002
+    grasp_seconds: float = 0.1
+
+
+class Monitor:
+    """Follows one trajectory.
+
+    Args:
+        state: the arm when the trajectory was sent.
+    """
+
+    #: Deviations by which the arm or a finger shows that it has started [rad, m].
+    STARTED = 0.01
+    STARTED_FINGER = 0.001
+    #: How much a second away from the expected time counts against a deviation [rad/s].
+    TIME_WEIGHT = 0.03
+
+    def __init__(self, trajectory: Trajectory, state: ArmState, settings: MonitorSettings) -> None:
+        self.trajectory, self.settings = trajectory, settings
+        self.time = 0.0
+        self.lag = 0.0
+        self._arm = len(trajectory.joint_names) - 2
+        self._sent = self._last = state
+        self._anchor = state.stamp
+        span = np.abs(trajectory.positions - trajectory.positions[0]).max(axis=0)
+        moves_arm = span[: self._arm].max() > 2 * self.STARTED
+        self._started = not moves_arm and span[self._arm :].max() < 2 * self.STARTED_FINGER
+        self._off_since: float | None = None
+        self._empty_since: float | None = None
+
+    def update(self, state: ArmState) -> Verdict:
+        """Takes in a new state; ``time`` is the trajectory's time afterwards [s]."""
+        previous, self._last = self._last, state
+        if state.stamp < previous.stamp - 0.1:
+            return Verdict.CLOCK_WENT_BACK
+        if not self._started and not self._starts(state):
+            late = (
+                state.received - self._sent.received > self.settings.start_seconds
+                and state.stamp - self._sent.stamp > self.settings.start_seconds
+            )
+            return Verdict.NOT_STARTED if late else Verdict.GOING
+        error = self._locate(state, max(0.0, state.stamp - previous.stamp))
+        elapsed = state.stamp - self._anchor
+        self.lag = max(0.0, min(elapsed, self.trajectory.duration) - self.time)
+        if self._lasts(
+            "_off_since",
+            error > self.settings.tracking_tolerance,
+            state.stamp,
+            self.settings.tracking_seconds,
+        ):
+            return Verdict.OFF_THE_PATH
+        if self._lasts(
+            "_empty_since", self._is_empty(state), state.stamp, self.settings.grasp_seconds
+        ):
+            return Verdict.GRASP_LOST
+        if self.lag > self.settings.max_lag:
+            return Verdict.BEHIND
+        over = elapsed - self.trajectory.duration
+        if over >= 0.0:
+            end = self.trajectory.positions[-1, : self._arm]
+            if np.abs(state.positions[: self._arm] - end).max() <= self.settings.goal_tolerance:
+                self.time = self.trajectory.duration
+                return Verdict.ARRIVED
+            if over > self.settings.settle_seconds:
+                return Verdict.NOT_ARRIVED
+        return Verdict.GOING
+
+    def _starts(self, state: ArmState) -> bool:
+        """Whether the arm or the fingers have left where they were."""
+        moved = np.abs(state.positions - self._sent.positions)
+        self._started = bool(
+            moved[: self._arm].max() > self.STARTED
+            or moved[self._arm :].max() > self.STARTED_FINGER
+        )
+        if self._started:
+            # The trajectory needed some time to come this far; look for it from its beginning.
+            first = self.trajectory.positions[0]
+            far = np.abs(self.trajectory.positions - first)
+            begun = (far[:, : self._arm].max(axis=1) > self.STARTED) | (
+                far[:, self._arm :].max(axis=1) > self.STARTED_FINGER
+            )
+            self.time = float(self.trajectory.times[int(np.argmax(begun))])
+            self._anchor = max(self._sent.stamp, state.stamp - self.time)
+        return self._started
+
+    def _locate(self, state: ArmState, step: float) -> float:
+        """Moves ``time`` to where the arm is on the path; returns its deviation there [rad]."""
+        expected = self.time + step
+        latest = state.stamp - self._anchor + 0.2
+        low = max(0.0, self.time - 0.3)
+        high = max(low, min(expected + 0.5, latest, self.trajectory.duration))
+        times = np.append(np.linspace(low, high, 41), np.clip(expected, low, high))
+        positions, _ = self.trajectory.sample(times)
+        errors = np.abs(positions[:, : self._arm] - state.positions[: self._arm]).max(axis=1)
+        best = int(np.argmin(errors + self.TIME_WEIGHT * np.abs(times - expected)))
+        self.time = float(times[best])
+        return float(errors[best])
+
+    def _is_empty(self, state: ArmState) -> bool:
+        """Whether the fingers have closed as far as they were sent, though a block is held."""
+        interval = self.trajectory.interval_at(self.time)
+        if not interval.holding or interval.gripping or self.time < interval.start + 0.05:
+            return False
+        fingers = float(np.mean(state.positions[self._arm :]))
+        return fingers <= interval.phase.tool.finger + self.settings.grasp_tolerance
+
+    def _lasts(self, since: str, condition: bool, stamp: float, seconds: float) -> bool:
+        if not condition:
+            setattr(self, since, None)
+            return False
+        if getattr(self, since) is None:
+            setattr(self, since, stamp)
+        return stamp - getattr(self, since) >= seconds

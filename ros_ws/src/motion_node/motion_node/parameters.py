@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parameters of motion_node, and the settings made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from tamp_runtime.parameters import ParameterSpec
+
+from .following import ExecutionSettings
+from .monitor import MonitorSettings
+from .optimiser import Settings
+from .path_problem import PathSettings
+from .phases import PhaseSettings
+from .timing import TimingSettings
+
+_SETTINGS, _EXECUTION, _MONITOR = Settings(), ExecutionSettings(), MonitorSettings()
+_PHASES, _PATH, _TIMING = _SETTINGS.phases, _SETTINGS.path, _SETTINGS.timing
+
+
+def _spec(
+    name: str, default: Any, description: str, low: float, high: float, read_only: bool = False
+) -> ParameterSpec:
+    return ParameterSpec(name, default, description, low, high, read_only)
+
+
+PARAMETERS = (
+    _spec(
+        "velocity_scale",
+        _TIMING.velocity_scale,
+        "Share of the joints' velocity limits that trajectories use.",
+        0.01,
+        1.0,
+    ),
+    _spec(
+        "acceleration_scale",
+        _TIMING.acceleration_scale,
+        "Share of the joints' acceleration limits that trajectories use.",
+        0.01,
+        1.0,
+    ),
+    ParameterSpec(
+        "acceleration_limits",
+        [15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0],
+        "Acceleration limits of the arm's joints [rad/s^2].",
+        0.1,
+        100.0,
+        True,
+        lambda value: "" if len(value) == 7 else "acceleration_limits needs 7 numbers",
+    ),
+    _spec(
+        "hand_clearance",
+        _PATH.margin,
+        "Distance of arm and held block to blocks and table, but where they are to touch [m].",
+        0.0,
+        0.05,
+        True,
+    ),
+    _spec(
+        "steps_per_phase",
+        _PATH.steps,
+        "Intervals into which the path of each pick or place is divided.",
+        10,
+        60,
+        True,
+    ),
+    _spec(
+        "vertical_steps",
+        _PATH.vertical,
+        "How many of them, at either end of a phase, the hand moves vertically.",
+        2,
+        4,
+        True,
+    ),
+    _spec(
+        "lift_height",
+        _PATH.lift,
+        "The hand moves vertically for at least this long at a pick or place [m].",
+        0.02,
+        0.2,
+        True,
+    ),
+    _spec(
+        "max_lean", _PATH.max_lean, "How far the hand may lean on its way [rad].", 0.0, 0.5, True
+    ),
+    _spec(
+        "max_grasp_width",
+        _PHASES.max_grasp_width,
+        "Widest block that the open fingers go around [m].",
+        0.01,
+        0.08,
+        True,
+    ),
+    _spec(
+        "place_gap",
+        _PHASES.place_gap,
+        "Height above its support at which a block is let go [m].",
+        0.0,
+        0.01,
+        True,
+    ),
+    _spec(
+        "max_overhang",
+        _PHASES.max_overhang,
+        "A block is put at most this share of its support's width away from the support's centre.",
+        0.0,
+        0.45,
+        True,
+    ),
+    _spec(
+        "grasp_squeeze",
+        _SETTINGS.squeeze,
+        "How much farther than the block's half width each finger is sent [m].",
+        0.002,
+        0.02,
+        True,
+    ),
+    _spec(
+        "close_seconds",
+        _TIMING.close_seconds,
+        "Standing still while the fingers close [s].",
+        0.2,
+        5.0,
+    ),
+    _spec(
+        "open_seconds", _TIMING.open_seconds, "Standing still while the fingers open [s].", 0.2, 5.0
+    ),
+    _spec(
+        "tracking_tolerance",
+        _MONITOR.tracking_tolerance,
+        "Deviation of a joint from the path that ends the execution [rad].",
+        0.01,
+        1.0,
+    ),
+    _spec(
+        "max_lag",
+        _MONITOR.max_lag,
+        "How far the arm may fall behind the trajectory [s].",
+        0.1,
+        60.0,
+    ),
+    _spec(
+        "start_timeout",
+        _MONITOR.start_seconds,
+        "The arm has to start within this time [s].",
+        0.5,
+        60.0,
+    ),
+    _spec(
+        "goal_tolerance",
+        _MONITOR.goal_tolerance,
+        "Deviation of a joint at the end that counts as arrived [rad].",
+        0.001,
+        0.2,
+    ),
+    _spec(
+        "grasp_tolerance",
+        _MONITOR.grasp_tolerance,
+        "Fingers this near to where they were sent hold nothing [m].",
+        0.0005,
+        0.02,
+    ),
+    _spec(
+        "joint_state_timeout",
+        _EXECUTION.joint_state_timeout,
+        "Silence of joint_states that ends the execution [s, wall time].",
+        0.1,
+        600.0,
+    ),
+    _spec(
+        "description_timeout",
+        _EXECUTION.description_timeout,
+        "How long a plan waits for robot_description [s, wall time].",
+        0.1,
+        600.0,
+    ),
+    _spec(
+        "rest_timeout",
+        _EXECUTION.rest_timeout,
+        "How long a plan waits for the arm to stand still [s, wall time].",
+        0.1,
+        600.0,
+    ),
+    _spec(
+        "execution_timeout_factor",
+        _EXECUTION.execution_factor,
+        "An execution ends after this many times its duration and 30 s [wall time].",
+        1.0,
+        10000.0,
+    ),
+    _spec(
+        "brake_seconds",
+        _EXECUTION.brake_seconds,
+        "In which a moving arm comes to rest when asked to stop [s].",
+        0.1,
+        2.0,
+    ),
+)
+
+
+def optimiser_settings(values: Mapping[str, Any]) -> Settings:
+    """What :class:`MotionOptimiser` is made with."""
+    return Settings(
+        phases=PhaseSettings(
+            max_grasp_width=values["max_grasp_width"],
+            place_gap=values["place_gap"],
+            max_overhang=values["max_overhang"],
+        ),
+        path=PathSettings(
+            steps=values["steps_per_phase"],
+            vertical=values["vertical_steps"],
+            lift=values["lift_height"],
+            margin=values["hand_clearance"],
+            max_lean=values["max_lean"],
+        ),
+        timing=timing_settings(values),
+        squeeze=values["grasp_squeeze"],
+    )
+
+
+def timing_settings(values: Mapping[str, Any]) -> TimingSettings:
+    """Those settings of the optimiser that may change from plan to plan."""
+    return TimingSettings(
+        velocity_scale=values["velocity_scale"],
+        acceleration_scale=values["acceleration_scale"],
+        close_seconds=values["close_seconds"],
+        open_seconds=values["open_seconds"],
+    )
+
+
+def execution_settings(values: Mapping[str, Any]) -> ExecutionSettings:
+    return ExecutionSettings(
+        joint_state_timeout=values["joint_state_timeout"],
+        description_timeout=values["description_timeout"],
+        rest_timeout=values["rest_timeout"],
+        execution_factor=values["execution_timeout_factor"],
+        brake_seconds=values["brake_seconds"],
+        monitor=MonitorSettings(
+            tracking_tolerance=values["tracking_tolerance"],
+            max_lag=values["max_lag"],
+            start_seconds=values["start_timeout"],
+            goal_tolerance=values["goal_tolerance"],
+            grasp_tolerance=values["grasp_tolerance"],
+        ),
+    )
