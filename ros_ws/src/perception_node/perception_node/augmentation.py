@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What training does to the input images: shifts, colours, and damage as of a bad detector.
+
+All of it is self-supervised: the target is the undamaged image at the place where it was put.
+"""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor
+from torch.nn import functional
+
+from .dataset import CROP_SIZE
+
+
+def recolored(pixels: Tensor, generator: torch.Generator) -> Tensor:
+    """Colours scaled and channels permuted, so that colour says nothing about the place.
+
+    Args:
+        pixels: in 0..1, shape (n, 3, h, w).
+    """
+    n = len(pixels)
+    order = torch.rand(n, 3, generator=generator).argsort(1)
+    mixed = pixels.gather(1, order[:, :, None, None].expand_as(pixels))
+    # A channel that is nearly black everywhere is lifted, as in a block of a brighter colour.
+    present = (pixels.sum(1, keepdim=True) > 0).float()
+    lift = 0.5 * torch.rand(n, 3, 1, 1, generator=generator)
+    gain = 0.5 + 0.6 * torch.rand(n, 1, 1, 1, generator=generator)
+    return ((mixed + lift * (pixels.amax(1, keepdim=True))) * gain).clamp(0.0, 1.0) * present
+
+
+def damaged(pixels: Tensor, sizes: Tensor, share: float, generator: torch.Generator) -> Tensor:
+    """Crops with eroded, holed or partly hidden masks; ``share`` of them are hit by each.
+
+    Args:
+        pixels: in 0..1, shape (n, channels, CROP_SIZE, CROP_SIZE), object at the bottom left.
+        sizes: width and height of the objects [px], shape (n, 2).
+    """
+    n = len(pixels)
+
+    def chosen() -> Tensor:
+        return (torch.rand(n, 1, 1, 1, generator=generator) < share).float()
+
+    mask = (pixels.amax(1, keepdim=True) > 0).float()
+    eroded = 1.0 - functional.max_pool2d(1.0 - functional.pad(mask, (1, 1, 1, 1)), 3, 1)
+    ragged = torch.maximum(eroded, mask * (torch.rand(mask.shape, generator=generator) < 0.5))
+    pick = chosen()
+    keep = pick * ragged + (1 - pick) * mask
+    rate = 0.6 * torch.rand(n, 1, 1, 1, generator=generator)
+    holes = (torch.rand(mask.shape, generator=generator) > rate).float()
+    pick = chosen()
+    keep = keep * (pick * holes + (1 - pick))
+    # A straight edge hides up to half of the object from one of four sides.
+    part = 0.5 * torch.rand(n, 1, 1, generator=generator)
+    steps = torch.arange(CROP_SIZE)
+    x = (steps[None, None, :] / sizes[:, 0, None, None]).expand(n, CROP_SIZE, CROP_SIZE)
+    y = ((CROP_SIZE - 1 - steps)[None, :, None] / sizes[:, 1, None, None]).expand_as(x)
+    side = torch.randint(0, 4, (n, 1, 1), generator=generator)
+    along = torch.where(side < 2, x, y)
+    depth = torch.where(side % 2 == 0, along, 1.0 - along)
+    visible = (depth >= part).float()[:, None]
+    pick = chosen()
+    return pixels * keep * (pick * visible + (1 - pick))
+
+
+def speckled(images: Tensor, share: float, generator: torch.Generator) -> Tensor:
+    """Images in which ``share`` have pixels and small squares that do not belong to the object.
+
+    Args:
+        images: in 0..1, shape (n, 3, size, size).
+    """
+    n, _, size, _ = images.shape
+    picked = (torch.rand(n, 1, 1, 1, generator=generator) < share).float()
+    rate = 0.02 * torch.rand(n, 1, 1, 1, generator=generator).square()
+    specks = (torch.rand(n, 1, size, size, generator=generator) < rate).float()
+    coarse = (torch.rand(n, 1, size // 4, size // 4, generator=generator) < 0.25 * rate).float()
+    squares = functional.interpolate(coarse, size=(size, size), mode="nearest")
+    specks = torch.maximum(specks, squares)
+    colors = torch.rand(n, 3, size, size, generator=generator)
+    return torch.where(picked * specks > 0, colors, images)

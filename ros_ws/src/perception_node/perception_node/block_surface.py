@@ -1,0 +1,261 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measures one block from the depth of its pixels: shape, faces, edges.
+
+What is seen of an upright block from the front is exact across the surface (depth) and known to a
+pixel along it (edges of the mask). So faces are measured by depth, and the position of an edge is
+kept as the interval between the last pixel that shows the face and the first that does not;
+:mod:`perception_node.block_poses` joins these intervals for the blocks of a scene.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scene_graph import BOX, CYLINDER, SPHERE
+
+from .camera_model import PinholeCamera
+from .errors import BadImageError
+from .surfaces import surface_normals
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+#: A point further than this from a surface is not of it [m].
+SURFACE_TOLERANCE: Final = 0.002
+#: How far a box's points may be from its faces, at the 80th percentile [m].
+FLATNESS: Final = 0.0018
+#: Least number of points that make a face.
+MIN_FACE_POINTS: Final = 4
+#: Least share of a block's pixels that must have depth.
+MIN_DEPTH_SHARE: Final = 0.6
+
+
+@dataclass(frozen=True)
+class Interval:
+    """What is known of a coordinate [m]: it is between ``low`` and ``high``."""
+
+    low: float
+    high: float
+
+    @property
+    def middle(self) -> float:
+        return 0.5 * (self.low + self.high)
+
+
+@dataclass(frozen=True)
+class BlockSurface:
+    """What the depth of one block's pixels says about it. Lengths in m, frame world.
+
+    The block's own frame is world turned by ``yaw`` about z: its x axis points out of the front.
+
+    Attributes:
+        shape: ``box``, ``cylinder`` or ``sphere``.
+        yaw: of the front's normal about world z [rad]; 0 for round shapes.
+        front: x of the front face in the block's frame; for round shapes of the nearest point.
+        left, right: y of the sides in the block's frame.
+        bottom, top: z of the lower and upper end.
+        tilt: angle between the front face and the vertical [rad].
+    """
+
+    shape: str
+    yaw: float
+    front: float
+    left: Interval
+    right: Interval
+    bottom: Interval
+    top: Interval
+    tilt: float = 0.0
+
+    def __post_init__(self) -> None:
+        values = (self.yaw, self.front, self.left.middle, self.right.middle, self.bottom.middle)
+        if not np.isfinite([*values, self.top.middle, self.tilt]).all():
+            raise BadImageError("its depth does not form a surface")
+
+
+def block_frame(yaw: float) -> Array:
+    """R, shape (3, 3): ``points_world @ R`` are coordinates in a frame turned by ``yaw`` [rad]."""
+    c, s = np.cos(yaw), np.sin(yaw)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def measure_block(mask: Mask, depth: NDArray[np.floating], camera: PinholeCamera) -> BlockSurface:
+    """Measures the block that a mask shows.
+
+    Args:
+        mask: the block's pixels, shape (height, width).
+        depth: along the optical axis, shape (height, width) [m]; anything but a positive number
+            means unknown.
+
+    Raises:
+        BadImageError: if too little depth is known to say anything; the sentence goes on from the
+            block's name.
+    """
+    rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))
+    if len(rows) == 0:
+        raise BadImageError("it has no pixels")
+    # One pixel around the block, where the image has one: normals need neighbours.
+    top, left = max(rows[0] - 1, 0), max(columns[0] - 1, 0)
+    crop = np.s_[top : rows[-1] + 2, left : columns[-1] + 2]
+    mask = mask[crop]
+    camera = camera.cropped(int(left), int(top), mask.shape[1], mask.shape[0])
+    points_world = camera.points_world(depth[crop])
+    valid = mask & np.isfinite(points_world[..., 0])
+    share = np.count_nonzero(valid) / np.count_nonzero(mask)
+    if share < MIN_DEPTH_SHARE or np.count_nonzero(valid) < 3 * MIN_FACE_POINTS:
+        raise BadImageError(f"only {share:.0%} of its pixels have depth")
+    points = points_world[valid]
+    normals = surface_normals(points_world, camera.position_world)[valid]
+    yaw, front, tilt = _front_plane(points, normals)
+    box = _measure_box(mask, points_world, camera, yaw, front, tilt)
+    if _box_residual(box, points) <= FLATNESS:
+        return box
+    return _measure_round(mask, points_world, normals, camera) or box
+
+
+def _front_plane(points: Array, normals: Array) -> tuple[float, float, float]:
+    """Yaw, offset and tilt of the upright plane with most points; arrays (n, 3)."""
+    upright = np.isfinite(normals[:, 0]) & (np.abs(normals[:, 2]) < 0.5)
+    if np.count_nonzero(upright) < MIN_FACE_POINTS:
+        return 0.0, float(np.quantile(points[:, 0], 0.8)), 0.0
+    angles = np.arctan2(normals[upright, 1], normals[upright, 0])
+    # The faces of a box are a quarter turn apart: four times the angle is the same for all.
+    quarter = float(np.angle(np.mean(np.exp(4j * angles)))) / 4.0
+    turns = np.round((angles - quarter) / (np.pi / 2)).astype(int) % 4
+    turn = int(np.bincount(turns, minlength=4).argmax())
+    yaw = quarter + turn * np.pi / 2
+    front = float(np.median((points[upright][turns == turn] @ block_frame(yaw))[:, 0]))
+    tilt, tolerance = 0.0, 2.0 * SURFACE_TOLERANCE
+    for _ in range(4):
+        in_frame = points @ block_frame(yaw)
+        near = np.abs(in_frame[:, 0] - front) < tolerance
+        if np.count_nonzero(near) < MIN_FACE_POINTS or np.ptp(in_frame[near, 1]) < 0.004:
+            break
+        centred = in_frame[near] - in_frame[near].mean(0)
+        slopes, *_ = np.linalg.lstsq(centred[:, 1:], centred[:, 0], rcond=None)
+        yaw -= float(np.arctan(slopes[0]))
+        tilt = float(np.abs(np.arctan(slopes[1])))
+        across = (points[near] @ block_frame(yaw))[:, 0]
+        front = float(np.median(across))
+        # As narrow as the depth's noise allows, so that the ends of other faces drop out.
+        tolerance = float(np.clip(4.0 * np.median(np.abs(across - front)), 2e-4, tolerance))
+    return float((yaw + np.pi) % (2.0 * np.pi) - np.pi), front, tilt
+
+
+def _measure_box(
+    mask: Mask, points_world: Array, camera: PinholeCamera, yaw: float, front: float, tilt: float
+) -> BlockSurface:
+    in_frame = points_world @ block_frame(yaw)
+    with np.errstate(invalid="ignore"):
+        behind = mask & (in_frame[..., 0] < front - SURFACE_TOLERANCE)
+    left, right, bottom, top = _edges(mask & ~behind, camera, yaw, front)
+    rest = in_frame[behind]
+    inside = (rest[:, 1] > left.high + SURFACE_TOLERANCE) & (
+        rest[:, 1] < right.low - SURFACE_TOLERANCE
+    )
+    top = _face_offset(rest[inside, 2], top) or top
+    below = rest[rest[:, 2] < top.low - SURFACE_TOLERANCE, 1]
+    left = _face_offset(below, left) or left
+    right = _face_offset(below, right) or right
+    return BlockSurface(BOX, yaw, front, left, right, bottom, top, tilt)
+
+
+def _face_offset(offsets: Array, edge: Interval) -> Interval | None:
+    """Offset of the face that begins at an edge, by the points that have nearly its offset [m]."""
+    near = offsets[
+        (offsets > edge.low - SURFACE_TOLERANCE) & (offsets < edge.high + SURFACE_TOLERANCE)
+    ]
+    if len(near) < MIN_FACE_POINTS or np.std(near) > SURFACE_TOLERANCE:
+        return None
+    middle, doubt = float(np.median(near)), 1e-4 + 2.0 * float(np.std(near)) / np.sqrt(len(near))
+    return Interval(middle - doubt, middle + doubt)
+
+
+def _edges(
+    face: Mask, camera: PinholeCamera, yaw: float, front: float
+) -> tuple[Interval, Interval, Interval, Interval]:
+    """Left, right, bottom and top edge of the pixels of an upright plane, in the block's frame.
+
+    Args:
+        face: the pixels, shape (height, width).
+        yaw, front: the plane.
+    """
+    rows, columns = np.flatnonzero(face.any(1)), np.flatnonzero(face.any(0))
+    if len(rows) == 0:
+        unknown = Interval(np.nan, np.nan)
+        return unknown, unknown, unknown, unknown
+    # One pixel more on every side, also outside the image: rays are known there as well.
+    v, u = np.arange(rows[0] - 1, rows[-1] + 2), np.arange(columns[0] - 1, columns[-1] + 2)
+    crop = np.pad(face[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1], 1)
+    rays = camera.rays_world(np.stack(np.meshgrid(u, v), axis=-1)) @ block_frame(yaw)
+    origin = camera.position_world @ block_frame(yaw)
+    points = origin + rays * ((front - origin[0]) / rays[..., :1])
+    y, z = points[..., 1], points[..., 2]
+    if y[0, -1] < y[0, 0]:
+        y, z, crop = y[:, ::-1], z[:, ::-1], crop[:, ::-1]
+    used = np.flatnonzero(crop.any(1))
+    first = crop.argmax(1)[used]
+    last = crop.shape[1] - 1 - crop[:, ::-1].argmax(1)[used]
+    left = _joined(y[used, first - 1], y[used, first])
+    right = _joined(y[used, last], y[used, last + 1])
+    used = np.flatnonzero(crop.any(0))
+    first = crop.argmax(0)[used]
+    last = crop.shape[0] - 1 - crop[::-1].argmax(0)[used]
+    top = _joined(z[first, used], z[first - 1, used])
+    bottom = _joined(z[last + 1, used], z[last, used])
+    return left, right, bottom, top
+
+
+def _joined(lows: Array, highs: Array) -> Interval:
+    """Where an edge is, after what every row says: their intersection, or with noise the median."""
+    low, high = float(lows.max()), float(highs.min())
+    if low <= high:
+        return Interval(low, high)
+    return Interval(float(np.median(lows)), float(np.median(highs)))
+
+
+def _box_residual(box: BlockSurface, points: Array) -> float:
+    """How far the points are from the nearest face, at the 80th percentile [m]."""
+    x, y, z = (points @ block_frame(box.yaw)).T
+    offsets = [x - box.front, y - box.left.middle, y - box.right.middle, z - box.top.middle]
+    return float(np.quantile(np.abs(offsets).min(axis=0), 0.8))
+
+
+def _measure_round(
+    mask: Mask, points_world: Array, normals: Array, camera: PinholeCamera
+) -> BlockSurface | None:
+    """The block as a sphere or an upright cylinder, whichever fits better; None if neither does."""
+    points = points_world[mask & np.isfinite(points_world[..., 0])]
+    centre, radius, sphere_residual = _fit_ball(points)
+    side = points[np.isfinite(normals[:, 0]) & (np.abs(normals[:, 2]) < 0.4)]
+    axis, axis_radius, axis_residual = _fit_ball(side[:, :2])
+    if min(sphere_residual, axis_residual) > FLATNESS:
+        return None
+    if sphere_residual < axis_residual:
+        x, y, z = centre
+        low, high = Interval(z - radius, z - radius), Interval(z + radius, z + radius)
+        left, right = Interval(y - radius, y - radius), Interval(y + radius, y + radius)
+        return BlockSurface(SPHERE, 0.0, x + radius, left, right, low, high)
+    x, y = axis
+    # Near its nearest line a cylinder is like the front of a box.
+    strip = _measure_box(mask, points_world, camera, 0.0, x + axis_radius, 0.0)
+    left = Interval(y - axis_radius, y - axis_radius)
+    right = Interval(y + axis_radius, y + axis_radius)
+    return BlockSurface(CYLINDER, 0.0, strip.front, left, right, strip.bottom, strip.top)
+
+
+def _fit_ball(points: Array) -> tuple[Array, float, float]:
+    """Circle or sphere through points (n, d), by least squares: centre, radius, median residual."""
+    if len(points) < 3 * MIN_FACE_POINTS:
+        return np.full(points.shape[1], np.nan), np.nan, np.inf
+    mean = points.mean(0)
+    centred = points - mean
+    design = np.column_stack([2.0 * centred, np.ones(len(points))])
+    solution, *_ = np.linalg.lstsq(design, np.sum(centred**2, axis=1), rcond=None)
+    centre = solution[:-1]
+    radius = float(np.sqrt(max(solution[-1] + centre @ centre, 0.0)))
+    residual = np.abs(np.linalg.norm(centred - centre, axis=1) - radius)
+    return mean + centre, radius, float(np.quantile(residual, 0.8))

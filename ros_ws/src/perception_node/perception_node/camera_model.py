@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The pinhole camera: between pixels and points in the world."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import BadImageError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PinholeCamera:
+    """A calibrated camera without distortion. Pixel (u, v) = (column, row), centres at integers.
+
+    Attributes:
+        intrinsics: K, shape (3, 3) [px].
+        world_from_optical: pose of the optical frame (x right, y down, z forward), shape (4, 4) [m].
+        width, height: image size [px].
+    """
+
+    intrinsics: Array
+    world_from_optical: Array
+    width: int
+    height: int
+
+    def __post_init__(self) -> None:
+        k, pose = self.intrinsics, self.world_from_optical
+        if k.shape != (3, 3) or not np.isfinite(k).all() or k[0, 0] <= 0 or k[1, 1] <= 0:
+            raise BadImageError("camera_info has no usable intrinsics K; calibrate the camera")
+        if pose.shape != (4, 4) or not np.isfinite(pose).all():
+            raise BadImageError("camera/extrinsics is not a finite transform")
+        rotation = pose[:3, :3]
+        if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-3:
+            raise BadImageError("camera/extrinsics does not hold a unit quaternion")
+
+    @property
+    def position_world(self) -> Array:
+        """The camera's centre, shape (3,) [m]."""
+        return self.world_from_optical[:3, 3]
+
+    def resized(self, width: int, height: int) -> PinholeCamera:
+        """The same camera delivering images of another size.
+
+        Raises:
+            BadImageError: if the ratio of the sides differs, which resizing cannot explain.
+        """
+        if (width, height) == (self.width, self.height):
+            return self
+        x, y = width / self.width, height / self.height
+        if abs(x / y - 1.0) > 0.02:
+            raise BadImageError(
+                f"image is {width}x{height} but the camera delivers {self.width}x{self.height}; "
+                "send images with the camera's ratio of sides"
+            )
+        k = self.intrinsics.copy()
+        k[0] *= x
+        k[1] *= y
+        # Pixel centres are at integers, so resizing also moves the origin by half a pixel.
+        k[0, 2] += 0.5 * x - 0.5
+        k[1, 2] += 0.5 * y - 0.5
+        return PinholeCamera(k, self.world_from_optical, width, height)
+
+    def cropped(self, left: int, top: int, width: int, height: int) -> PinholeCamera:
+        """The camera whose image is a part of this one's, which may reach beyond it [px]."""
+        k = self.intrinsics.copy()
+        k[0, 2] -= left
+        k[1, 2] -= top
+        return PinholeCamera(k, self.world_from_optical, width, height)
+
+    def project(self, points_world: ArrayLike) -> Array:
+        """Pixels (u, v) of points, shape (..., 3) [m] -> (..., 2) [px]; NaN behind the camera."""
+        points = np.asarray(points_world, dtype=np.float64) - self.position_world
+        optical = points @ self.world_from_optical[:3, :3]
+        depth = np.where(optical[..., 2:] > 1e-6, optical[..., 2:], np.nan)
+        k = self.intrinsics
+        u = k[0, 0] * optical[..., 0] / depth[..., 0] + k[0, 2]
+        v = k[1, 1] * optical[..., 1] / depth[..., 0] + k[1, 2]
+        return np.stack([u, v], axis=-1)
+
+    def rays_world(self, pixels: ArrayLike) -> Array:
+        """Directions through pixels, (..., 2) [px] -> (..., 3), of unit length along the optical axis.
+
+        A point of depth d on the ray of a pixel is ``position_world + d * ray``.
+        """
+        pixels = np.asarray(pixels, dtype=np.float64)
+        k = self.intrinsics
+        x = (pixels[..., 0] - k[0, 2]) / k[0, 0]
+        y = (pixels[..., 1] - k[1, 2]) / k[1, 1]
+        optical = np.stack([x, y, np.ones_like(x)], axis=-1)
+        return optical @ self.world_from_optical[:3, :3].T
+
+    def points_world(self, depth: NDArray[np.floating]) -> Array:
+        """A point for every pixel of a depth image, (height, width) [m] -> (height, width, 3) [m].
+
+        NaN where the depth is zero, negative or not finite.
+        """
+        rows, columns = np.indices(depth.shape)
+        rays = self.rays_world(np.stack([columns, rows], axis=-1))
+        valid = np.isfinite(depth) & (depth > 0)
+        distance = np.where(valid, depth, np.nan).astype(np.float64)
+        return self.position_world + rays * distance[..., None]

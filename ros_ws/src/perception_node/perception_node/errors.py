@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What can be wrong with perception's inputs; every sentence says what to do about it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class PerceptionError(ValueError):
+    """Base class of this package's errors."""
+
+
+class BadImageError(PerceptionError):
+    """An image, segmentation, depth or camera that cannot be used."""
+
+
+class WeightsError(PerceptionError):
+    """A weights file that is missing, damaged or not ours; ``path`` is the file."""
+
+    def __init__(self, message: str, path: Path) -> None:
+        super().__init__(message)
+        self.path = path
+
+
+class ClusteringError(PerceptionError):
+    """More clusters asked for than there are values, or values that are not numbers."""
+
+
+class DatasetError(PerceptionError):
+    """A data set that is missing or not in the format of :mod:`perception_node.dataset`."""

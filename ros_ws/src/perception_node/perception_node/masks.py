@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From scene image and segmentation to one image per object: u_i and u_i^def (5.2.1, A.2.6)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+#: Side of the square images that the visual module works on [px] (5.2.1).
+IMAGE_SIZE: Final = 128
+#: Labels with fewer pixels than this part of the image are specks, not blocks.
+MIN_AREA: Final = 3e-4
+
+
+@dataclass(frozen=True)
+class ObjectImages:
+    """What the visual module sees of the N objects of one scene.
+
+    Attributes:
+        labels: instance labels, shape (N,), ascending.
+        images: u_i, the scene with everything outside the object's mask zeroed, float32 in 0..1,
+            shape (N, 3, size, size).
+        coverage: how much of each pixel is the object, float32 in 0..1, shape (N, size, size).
+        default_images: u_i^def, the object's own pixels at the bottom-left corner, as ``images``.
+        default_coverage: the same for ``coverage``.
+        crop_sizes: width and height of the object in ``default_images``, shape (N, 2) [px].
+    """
+
+    labels: NDArray[np.intp]
+    images: NDArray[np.float32]
+    coverage: NDArray[np.float32]
+    default_images: NDArray[np.float32]
+    default_coverage: NDArray[np.float32]
+    crop_sizes: NDArray[np.intp]
+
+    def __len__(self) -> int:
+        return len(self.labels)
+
+
+def object_labels(labels: NDArray[np.integer]) -> NDArray[np.intp]:
+    """Labels of everything larger than a speck, ascending, shape (N,)."""
+    counts = np.bincount(labels.ravel())
+    counts[0] = 0
+    return np.flatnonzero(counts >= max(1.0, MIN_AREA * labels.size))
+
+
+def largest_part(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The mask without detached specks: its largest part, after one-pixel cracks are bridged."""
+    closed = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
+    count, parts, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8)
+    if count <= 2:
+        return mask
+    largest = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
+    return mask & (parts == largest)
+
+
+def object_images(
+    rgb: NDArray[np.uint8], labels: NDArray[np.integer], size: int = IMAGE_SIZE
+) -> ObjectImages:
+    """Splits a scene image into N images with one object each.
+
+    The scene is scaled to fit a square of ``size``, in its bottom-left corner: the origin of φ.
+    The default crop holds the largest connected part of the mask only.
+
+    Args:
+        rgb: shape (height, width, 3).
+        labels: instance labels, 0 = none, shape (height, width).
+        size: side of the images [px].
+    """
+    found = object_labels(labels)
+    shape = (len(found), size, size)
+    coverage = np.zeros(shape, np.float32)
+    images = np.zeros((*shape, 3), np.float32)
+    default_coverage, default_images = np.zeros_like(coverage), np.zeros_like(images)
+    crop_sizes = np.zeros((len(found), 2), np.intp)
+    for index, label in enumerate(found):
+        mask = labels == label
+        image, part = scale_into_corner(rgb, mask, size)
+        images[index], coverage[index] = image, part
+        clean = largest_part(mask)
+        if not np.array_equal(clean, mask):
+            image, part = scale_into_corner(rgb, clean, size)
+        rows, columns = np.flatnonzero(part.any(1)), np.flatnonzero(part.any(0))
+        height, width = rows[-1] - rows[0] + 1, columns[-1] - columns[0] + 1
+        box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        default_images[index, size - height :, :width] = image[box]
+        default_coverage[index, size - height :, :width] = part[box]
+        crop_sizes[index] = width, height
+    return ObjectImages(
+        labels=found,
+        images=np.ascontiguousarray(images.transpose(0, 3, 1, 2)),
+        coverage=coverage,
+        default_images=np.ascontiguousarray(default_images.transpose(0, 3, 1, 2)),
+        default_coverage=default_coverage,
+        crop_sizes=crop_sizes,
+    )
+
+
+def scale_into_corner(
+    rgb: NDArray[np.uint8], mask: NDArray[np.bool_], size: int
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Masked image and coverage in 0..1, scaled by area to fit the bottom-left of a square.
+
+    Returns:
+        Shapes (size, size, 3) and (size, size).
+    """
+    height, width = mask.shape
+    scale = size / max(height, width)
+    inner = (round(width * scale), round(height * scale))
+    channels = np.dstack([rgb, np.full_like(mask, 255, np.uint8)]) * mask[..., None]
+    scaled = cv2.resize(channels, inner, interpolation=cv2.INTER_AREA).astype(np.float32) / 255.0
+    square = np.zeros((size, size, 4), np.float32)
+    square[size - inner[1] :, : inner[0]] = scaled
+    return square[..., :3], square[..., 3]

@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Perception as a ROS node; see :class:`PerceptionNode`."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Final
+
+import torch
+from geometry_msgs.msg import TransformStamped
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.node import Node
+from sensor_msgs.msg import CameraInfo, Image
+from std_msgs.msg import Header
+from tamp_interfaces.msg import SceneGraph
+from tamp_interfaces.srv import ImageToSceneGraph
+from tamp_runtime.images import ImageError, array_from_image, image_from_array
+from tamp_runtime.parameters import declare_parameters
+from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
+from tamp_runtime.runner import run_node
+from visualization_msgs.msg import MarkerArray
+
+from .camera_model import PinholeCamera
+from .conversions import (
+    camera_from_messages,
+    markers_from_graph,
+    perceived_to_message,
+    stamp_nanoseconds,
+)
+from .drawing import draw_scene_graph
+from .errors import BadImageError
+from .frame_pairing import FramePairing, StampedSet
+from .parameters import PARAMETERS, config_from_parameters
+from .perception import Perceived, Perception
+from .status import Status
+from .weights import DEFAULT_WEIGHTS, load_weights
+
+#: Encodings of the three streams that make a frame.
+STREAMS: Final = {"image": "rgb8", "depth": "32FC1", "segmentation": "16UC1"}
+TOPICS: Final = {
+    "image": "camera/image_raw",
+    "depth": "camera/depth/image_raw",
+    "segmentation": "camera/segmentation",
+}
+#: After this long without a complete frame, though images arrive, the reason is published [s].
+SILENCE: Final = 2.0
+
+
+class PerceptionNode(Node):
+    """From camera images to scene graphs.
+
+    Subscribes:
+        camera/image_raw, camera/depth/image_raw, camera/segmentation (sensor_msgs/Image): paired
+            by equal stamps; only the newest complete frame is interpreted
+        camera/camera_info (sensor_msgs/CameraInfo)
+        camera/extrinsics (geometry_msgs/TransformStamped), latched
+    Publishes:
+        scene_graph (tamp_interfaces/SceneGraph): one for each frame, its status says whether it can
+            be planned on
+        scene_graph/image (sensor_msgs/Image): the camera image with the graph drawn in
+        scene_graph/markers (visualization_msgs/MarkerArray)
+    Services:
+        image_to_scene_graph (tamp_interfaces/ImageToSceneGraph): interprets a goal image
+    """
+
+    def __init__(self, **kwargs: Any) -> None:
+        """Raises ValueError (WeightsError) if a parameter or the weights file cannot be used."""
+        super().__init__("perception_node", **kwargs)
+        self._values = declare_parameters(self, PARAMETERS, self._parameters_changed)
+        torch.set_num_threads(self._values["threads"])
+        weights = Path(self._values["weights"] or DEFAULT_WEIGHTS)
+        self._perception = Perception(load_weights(weights), config_from_parameters(self._values))
+        self._pairing = FramePairing(tuple(STREAMS))
+        self._info: CameraInfo | None = None
+        self._extrinsics: TransformStamped | None = None
+        self._status: Status | None = None
+        self._last_image = 0.0
+        self._incomplete_since: float | None = None
+        self._create_interfaces()
+        self.get_logger().info(
+            f"weights {weights} (backbone {self._perception.module.backbone}), "
+            f"{len(self._perception.config.stack_positions)} places"
+        )
+
+    def _create_interfaces(self) -> None:
+        self._graphs = self.create_publisher(SceneGraph, "scene_graph", NEWEST)
+        self._drawings = self.create_publisher(Image, "scene_graph/image", SENSOR_DATA)
+        self._markers = self.create_publisher(MarkerArray, "scene_graph/markers", RELIABLE)
+        frames = MutuallyExclusiveCallbackGroup()
+        for stream, topic in TOPICS.items():
+            self.create_subscription(
+                Image, topic, self._receiver(stream), NEWEST, callback_group=frames
+            )
+        self.create_subscription(
+            CameraInfo, "camera/camera_info", self._on_info, NEWEST, callback_group=frames
+        )
+        self.create_subscription(
+            TransformStamped,
+            "camera/extrinsics",
+            self._on_extrinsics,
+            LATCHED,
+            callback_group=frames,
+        )
+        self.create_timer(0.5, self._on_timer, callback_group=frames)
+        self.create_service(
+            ImageToSceneGraph,
+            "image_to_scene_graph",
+            self._on_goal_image,
+            callback_group=MutuallyExclusiveCallbackGroup(),
+        )
+
+    # Callbacks
+
+    def _parameters_changed(self, values: dict[str, Any]) -> None:
+        self._values = {**self._values, **values}
+        config = config_from_parameters(self._values)
+        self._perception = Perception(self._perception.module, config)
+
+    def _on_info(self, message: CameraInfo) -> None:
+        self._info = message
+
+    def _on_extrinsics(self, message: TransformStamped) -> None:
+        self._extrinsics = message
+
+    def _receiver(self, stream: str) -> Callable[[Image], None]:
+        def receive(message: Image) -> None:
+            self._last_image = time.perf_counter()
+            frame = self._pairing.add(
+                stream, stamp_nanoseconds(message.header), message, self._last_image
+            )
+            if frame is None:
+                self._incomplete_since = self._incomplete_since or self._last_image
+                return
+            self._incomplete_since = None
+            self._interpret(frame)
+
+        return receive
+
+    def _on_timer(self) -> None:
+        """Says so when images arrive that never make a frame."""
+        now = time.perf_counter()
+        since = self._incomplete_since
+        if since is None or now - since < SILENCE or now - self._last_image > SILENCE:
+            return
+        self._incomplete_since = now
+        missing = ", ".join(TOPICS[stream] for stream in self._pairing.missing())
+        header = Header(stamp=self.get_clock().now().to_msg(), frame_id=self._frame_id())
+        sentence = f"no {missing} arrives with the stamps of the other images; check the camera"
+        self._publish(self._perception.rejected(Status.BAD_IMAGE, sentence), header, now, None)
+
+    def _on_goal_image(
+        self, request: ImageToSceneGraph.Request, response: ImageToSceneGraph.Response
+    ) -> ImageToSceneGraph.Response:
+        start = time.perf_counter()
+        header = Header(stamp=request.image.header.stamp, frame_id=self._frame_id())
+        try:
+            rgb = array_from_image(request.image, STREAMS["image"])
+            labels = array_from_image(request.segmentation, STREAMS["segmentation"])
+            camera = self._camera() if self._info and self._extrinsics else None
+            perceived = self._perception.perceive(rgb, labels, None, camera)
+        except (ImageError, BadImageError) as error:
+            perceived = self._perception.rejected(Status.BAD_IMAGE, str(error))
+        response.scene_graph = perceived_to_message(perceived, header, time.perf_counter() - start)
+        return response
+
+    # Frames
+
+    def _interpret(self, frame: StampedSet) -> None:
+        messages = frame.messages
+        header = Header(stamp=messages["image"].header.stamp, frame_id=self._frame_id())
+        picture = None
+        try:
+            rgb, depth, labels = (
+                self._pixels(stream, messages[stream])
+                for stream in ("image", "depth", "segmentation")
+            )
+            if labels.shape == rgb.shape[:2]:
+                picture = rgb, labels
+            perceived = self._perception.perceive(rgb, labels, depth, self._camera())
+        except (ImageError, BadImageError) as error:
+            perceived = self._perception.rejected(Status.BAD_IMAGE, str(error))
+        except Exception as error:  # a defect must neither stop the node nor go unseen
+            self.get_logger().error(f"interpreting a frame failed: {error!r}", exc_info=True)
+            perceived = self._perception.rejected(
+                Status.BAD_IMAGE, f"internal error: {error!r}; please report the log of this node"
+            )
+        self._publish(perceived, header, frame.arrival, picture)
+
+    def _pixels(self, stream: str, message: Image) -> Any:
+        try:
+            return array_from_image(message, STREAMS[stream])
+        except ImageError as error:
+            raise BadImageError(f"{TOPICS[stream]}: {error}") from error
+
+    def _camera(self) -> PinholeCamera:
+        """Raises BadImageError while the camera is unknown."""
+        if self._info is None or self._extrinsics is None:
+            topic = "camera/camera_info" if self._info is None else "camera/extrinsics"
+            raise BadImageError(f"no {topic} has arrived yet; is the camera's driver complete?")
+        return camera_from_messages(self._info, self._extrinsics)
+
+    def _frame_id(self) -> str:
+        return self._extrinsics.header.frame_id if self._extrinsics else "world"
+
+    def _publish(self, perceived: Perceived, header: Header, arrival: float, picture: Any) -> None:
+        seconds = time.perf_counter() - arrival
+        self._graphs.publish(perceived_to_message(perceived, header, seconds))
+        if perceived.status is not self._status:
+            self._status = perceived.status
+            log = self.get_logger()
+            say = log.info if perceived.status is Status.CONFIDENT else log.warning
+            say(f"{perceived.status.name}: {perceived.message or 'the scene is clear'}")
+        if picture is not None and self._drawings.get_subscription_count():
+            drawing = draw_scene_graph(
+                *picture, perceived.graph, perceived.status, perceived.message
+            )
+            self._drawings.publish(image_from_array(drawing, "rgb8", header))
+        if self._markers.get_subscription_count():
+            self._markers.publish(markers_from_graph(perceived.graph, header))
+
+
+def main() -> int:
+    """Entry point of ``ros2 run perception_node perception_node``."""
+    return run_node(PerceptionNode)

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parameters of perception_node, and what they mean to the algorithm."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, Final
+
+import numpy as np
+from tamp_runtime.parameters import ParameterSpec
+
+from .conversions import positions_from_parameter
+from .perception import PerceptionConfig
+
+_DEFAULT: Final = PerceptionConfig()
+
+
+def _positions_problem(values: Any) -> str:
+    try:
+        positions = positions_from_parameter(values)
+    except ValueError as error:
+        return f"stack_positions {error}"
+    if not np.isfinite(values).all():
+        return "stack_positions must be finite"
+    gaps = np.linalg.norm(np.diff(np.array(positions).reshape(-1, 3), axis=0), axis=1)
+    return "" if (gaps > 0.02).all() else "stack_positions has places less than 2 cm apart"
+
+
+PARAMETERS: Final = (
+    ParameterSpec(
+        "weights",
+        "",
+        "weights file of the visual module (safetensors); empty: those of the package",
+        read_only=True,
+    ),
+    ParameterSpec(
+        "threads",
+        1,
+        "processor threads of the visual module",
+        minimum=1,
+        maximum=64,
+        read_only=True,
+    ),
+    ParameterSpec(
+        "stack_positions",
+        [value for position in _DEFAULT.stack_positions for value in position],
+        "x, y, z of each place on the table, from the left of the image, one after the other [m]",
+        minimum=-10.0,
+        maximum=10.0,
+        check=_positions_problem,
+    ),
+    ParameterSpec(
+        "min_confidence",
+        _DEFAULT.min_confidence,
+        "least confidence (A.2.5) of a graph that may be planned on [0..1]",
+        minimum=0.0,
+        maximum=1.0,
+    ),
+    ParameterSpec(
+        "max_hidden",
+        _DEFAULT.max_hidden,
+        "greatest share of the column over a place that something other than a block may hide "
+        "in a graph that may be planned on [0..1]",
+        minimum=0.0,
+        maximum=1.0,
+    ),
+    ParameterSpec(
+        "column_half_width",
+        _DEFAULT.column_half_width,
+        "half the side of the column over a place in which blocks can stand [m]",
+        minimum=0.005,
+        maximum=1.0,
+    ),
+    ParameterSpec(
+        "column_height",
+        _DEFAULT.column_height,
+        "height of that column [m]",
+        minimum=0.02,
+        maximum=3.0,
+    ),
+    ParameterSpec(
+        "place_tolerance",
+        _DEFAULT.limits.place_tolerance,
+        "how far beside its place's centre the lowest block may stand [m]",
+        minimum=0.001,
+        maximum=1.0,
+    ),
+    ParameterSpec(
+        "support_gap",
+        _DEFAULT.limits.gap,
+        "height that may be measured between a block and what it stands on [m]",
+        minimum=0.001,
+        maximum=0.1,
+    ),
+    ParameterSpec(
+        "max_tilt",
+        _DEFAULT.limits.tilt,
+        "angle by which a standing block may lean [rad]",
+        minimum=0.01,
+        maximum=1.0,
+    ),
+)
+
+
+def config_from_parameters(values: Mapping[str, Any]) -> PerceptionConfig:
+    """The algorithm's configuration for a full set of parameter values."""
+    return PerceptionConfig(
+        stack_positions=positions_from_parameter(values["stack_positions"]),
+        min_confidence=values["min_confidence"],
+        max_hidden=values["max_hidden"],
+        column_half_width=values["column_half_width"],
+        column_height=values["column_height"],
+        limits=replace(
+            _DEFAULT.limits,
+            place_tolerance=values["place_tolerance"],
+            gap=values["support_gap"],
+            tilt=values["max_tilt"],
+        ),
+    )

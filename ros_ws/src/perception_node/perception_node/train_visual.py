@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``ros2 run perception_node train_visual``: trains the visual module G on rendered scenes.
+
+Self-supervised: it reads images and masks, never what stands where. Ctrl-C saves and stops; the
+same command goes on from there.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import subprocess
+import sys
+from dataclasses import asdict, fields
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+import torch
+from tqdm import tqdm
+
+from .coordinate_regressor import BACKBONES
+from .dataset import read_crops
+from .errors import PerceptionError
+from .training import Trainer, TrainingConfig
+from .weights import DEFAULT_WEIGHTS, save_weights
+
+CHECKPOINT = "checkpoint.pt"
+WEIGHTS = "visual_module.safetensors"
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit code 0 when done, 130 when stopped by Ctrl-C, 2 when it cannot start."""
+    options = _parse(arguments)
+    names = [field.name for field in fields(TrainingConfig)]
+    config = TrainingConfig(**{name: getattr(options, name) for name in names})
+    torch.set_num_threads(options.threads)
+    checkpoint = options.run / CHECKPOINT
+    try:
+        crops = read_crops(options.data)
+        trainer = Trainer(crops, config)
+        if checkpoint.exists():
+            trainer.resume(checkpoint)
+            print(f"going on from step {trainer.step} of {config.steps} ({checkpoint})")
+    except (PerceptionError, OSError, ValueError) as error:
+        print(f"cannot train: {error}", file=sys.stderr)
+        return 2
+    done = _train(trainer, checkpoint)
+    if not done:
+        print(f"stopped at step {trainer.step}; the same command goes on from there")
+        return 130
+    path = options.run / WEIGHTS
+    save_weights(trainer.module, path, _metadata(options, trainer))
+    print(f"{path} written after {trainer.seconds:.0f} s of training")
+    if options.install:
+        shutil.copyfile(path, DEFAULT_WEIGHTS)
+        print(f"installed as the package's default: {DEFAULT_WEIGHTS}")
+    else:
+        print(
+            f"use it with: ros2 run perception_node perception_node --ros-args -p weights:={path}"
+        )
+    return 0
+
+
+def _train(trainer: Trainer, checkpoint: Path) -> bool:
+    """Trains with a progress bar; whether all steps are done."""
+    average = 0.0
+    with tqdm(total=trainer.config.steps, initial=trainer.step, unit="step") as progress:
+
+        def show(step: int, loss: float) -> bool:
+            nonlocal average
+            average = loss if average == 0.0 else 0.98 * average + 0.02 * loss
+            progress.update(step - progress.n)
+            progress.set_postfix(loss=f"{average:.4f}")
+            return True
+
+        try:
+            return trainer.run(show, checkpoint)
+        except KeyboardInterrupt:
+            trainer.save(checkpoint)
+            return False
+
+
+def _parse(arguments: list[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="train_visual",
+        description=__doc__,
+        formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+    )
+    parser.add_argument("--data", type=Path, default=Path("data/states_5"), help="folder of shards")
+    parser.add_argument("--run", type=Path, default=Path("runs/visual"), help="folder to write")
+    parser.add_argument("--threads", type=int, default=2, help="processor threads")
+    parser.add_argument(
+        "--install", action="store_true", help="make the result the package's default weights"
+    )
+    for field in fields(TrainingConfig):
+        flag = f"--{field.name.replace('_', '-')}"
+        default: Any = field.default
+        if isinstance(default, bool):
+            action = argparse.BooleanOptionalAction
+            parser.add_argument(flag, action=action, default=default, help=field.name)
+        else:
+            choices = BACKBONES if field.name == "backbone" else None
+            parser.add_argument(
+                flag, type=type(default), default=default, choices=choices, help=field.name
+            )
+    return parser.parse_args(arguments)
+
+
+def _metadata(options: argparse.Namespace, trainer: Trainer) -> dict[str, str]:
+    """How the weights came about, for the file's header."""
+    settings = " ".join(
+        f"--{name.replace('_', '-')} {value}" for name, value in asdict(trainer.config).items()
+    )
+    try:
+        commit = subprocess.run(
+            ["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=True
+        ).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        commit = "unknown"
+    return {
+        "command": f"ros2 run perception_node train_visual --data {options.data} {settings}",
+        "commit": commit,
+        "date": date.today().isoformat(),
+        "training_seconds": f"{trainer.seconds:.0f}",
+        "torch": str(torch.__version__),
+    }
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Trains the visual module G self-supervised: eq. 5.3 on crops of rendered scenes, no labels."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from .augmentation import damaged, recolored, speckled
+from .coordinate_regressor import DEFAULT_BACKBONE
+from .dataset import ObjectCrops, place_crops
+from .errors import WeightsError
+from .grid_sampler import sample
+from .masks import IMAGE_SIZE
+from .objective import reconstruction_loss
+from .visual_module import TRANSLATION_FACTOR, VisualModule
+
+
+@dataclass(frozen=True)
+class TrainingConfig:
+    """Hyper-parameters; batch size, learning rate and weight decay are those of Table A.1.
+
+    Attributes:
+        backbone: of the coordinate regressor.
+        imagenet: start from ImageNet weights (5.2.1; ResNets only, needs a network).
+        steps: number of batches.
+        batch_scenes: scenes a batch.
+        learning_rate: peak of a one-cycle schedule.
+        weight_decay: of AdamW.
+        shift_share: share of objects that are put anywhere in the image; the others are shifted
+            together with their scene.
+        damage_share: share of inputs hit by each kind of damage; targets are never damaged.
+        bfloat16: autocast of the regressor.
+        checkpoint_every: steps between checkpoints.
+        seed: of weights, batches and augmentation.
+    """
+
+    backbone: str = DEFAULT_BACKBONE
+    imagenet: bool = False
+    steps: int = 2000
+    batch_scenes: int = 16
+    learning_rate: float = 1e-3
+    weight_decay: float = 1e-4
+    translation_factor: float = TRANSLATION_FACTOR
+    shift_share: float = 0.7
+    damage_share: float = 0.3
+    bfloat16: bool = True
+    checkpoint_every: int = 200
+    seed: int = 0
+
+
+class Trainer:
+    """One training run; its whole state can be saved and taken up again."""
+
+    def __init__(self, crops: ObjectCrops, config: TrainingConfig) -> None:
+        self.config = config
+        self.crops = crops
+        torch.manual_seed(config.seed)
+        self.module = VisualModule(config.backbone, config.translation_factor, config.imagenet)
+        self.optimizer = torch.optim.AdamW(
+            self.module.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay
+        )
+        self.schedule = torch.optim.lr_scheduler.OneCycleLR(
+            self.optimizer, config.learning_rate, total_steps=config.steps, pct_start=0.15
+        )
+        self.generator = torch.Generator().manual_seed(config.seed)
+        self.step = 0
+        self.seconds = 0.0
+
+    def run(self, on_step: Callable[[int, float], bool], checkpoint: Path | None = None) -> bool:
+        """Trains until done, or until ``on_step(step, loss)`` returns False.
+
+        A checkpoint is written now and then, and at the end in either case.
+
+        Returns:
+            Whether all steps are done.
+        """
+        self.module.train()
+        go_on = True
+        while go_on and self.step < self.config.steps:
+            start = time.perf_counter()
+            loss = self._advance()
+            self.seconds += time.perf_counter() - start
+            go_on = on_step(self.step, loss)
+            if checkpoint and self.step % self.config.checkpoint_every == 0:
+                self.save(checkpoint)
+        if checkpoint:
+            self.save(checkpoint)
+        return self.step >= self.config.steps
+
+    def _advance(self) -> float:
+        inputs, target, default = self._batch()
+        scenes, objects = target.shape[:2]
+        with torch.autocast("cpu", torch.bfloat16, enabled=self.config.bfloat16):
+            phi = self.module.regressor(inputs)
+        predicted = sample(default, phi, self.config.translation_factor)
+        loss = reconstruction_loss(predicted.unflatten(0, (scenes, objects)), target)
+        self.optimizer.zero_grad(set_to_none=True)
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(self.module.parameters(), 1.0)
+        self.optimizer.step()
+        self.schedule.step()
+        self.step += 1
+        return float(loss.detach())
+
+    def _batch(self) -> tuple[Tensor, Tensor, Tensor]:
+        """Damaged inputs (n, 3, s, s), targets u_i (scenes, objects, 3, s, s), u_def (n, 3, s, s)."""
+        rng, config = self.generator, self.config
+        starts = self.crops.scenes
+        counts = starts[1:] - starts[:-1]
+        objects = int(counts.max())
+        full = torch.nonzero(counts == objects)[:, 0]
+        picked = full[torch.randint(0, len(full), (config.batch_scenes,), generator=rng)]
+        index = (starts[picked, None] + torch.arange(objects)).flatten()
+        pixels = recolored(self.crops.pixels[index].float() / 255.0, rng)
+        sizes, corners = self.crops.sizes[index], self.crops.corners[index]
+        corners = _shifted(corners, sizes, objects, config.shift_share, rng)
+        target = place_crops(pixels, corners)
+        inputs = place_crops(damaged(pixels, sizes, config.damage_share, rng), corners)
+        inputs = speckled(inputs, config.damage_share, rng)
+        default = place_crops(pixels, torch.zeros_like(corners))
+        return inputs, target.unflatten(0, (-1, objects)), default
+
+    def save(self, path: Path) -> None:
+        """Writes the whole state of the run; the old file is replaced once the new one is there."""
+        path.parent.mkdir(parents=True, exist_ok=True)
+        partial = path.with_suffix(".partial")
+        torch.save(self.state(), partial)
+        partial.replace(path)
+
+    def state(self) -> dict[str, Any]:
+        return {
+            "config": asdict(self.config),
+            "step": self.step,
+            "seconds": self.seconds,
+            "module": self.module.state_dict(),
+            "optimizer": self.optimizer.state_dict(),
+            "schedule": self.schedule.state_dict(),
+            "generator": self.generator.get_state(),
+        }
+
+    def resume(self, path: Path) -> None:
+        """Takes up a run where :meth:`save` left it; executes nothing from the file.
+
+        Raises:
+            WeightsError: if the file is damaged or belongs to a run with other hyper-parameters.
+        """
+        try:
+            state = torch.load(path, weights_only=True)
+            if state["config"] != asdict(self.config):
+                raise WeightsError(
+                    f"checkpoint {path} belongs to a run with other hyper-parameters; "
+                    "use another --run folder, or delete it",
+                    path,
+                )
+            self.module.load_state_dict(state["module"])
+            self.optimizer.load_state_dict(state["optimizer"])
+            self.schedule.load_state_dict(state["schedule"])
+            self.generator.set_state(state["generator"])
+            self.step, self.seconds = int(state["step"]), float(state["seconds"])
+        except WeightsError:
+            raise
+        except Exception as error:  # torch reports damage by a dozen types
+            raise WeightsError(
+                f"checkpoint {path} is damaged ({error}); delete it", path
+            ) from error
+
+
+def _shifted(
+    corners: Tensor, sizes: Tensor, objects: int, share: float, generator: torch.Generator
+) -> Tensor:
+    """New corners [px]: each scene shifted as a whole, and ``share`` of the objects put anywhere."""
+    room = IMAGE_SIZE - sizes
+    grouped = corners.unflatten(0, (-1, objects))
+    low = -grouped.amin(1)
+    high = (room.unflatten(0, (-1, objects)) - grouped).amin(1)
+    draw = torch.rand(low.shape, generator=generator)
+    together = (grouped + (low + draw * (high - low + 1)).floor().long()[:, None]).flatten(0, 1)
+    anywhere = (torch.rand(room.shape, generator=generator) * (room + 1)).floor().long()
+    alone = torch.rand(len(corners), 1, generator=generator) < share
+    return torch.where(alone, anywhere, together)

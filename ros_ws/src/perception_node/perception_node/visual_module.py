@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The visual module G: coordinate regressor π and affine grid sampler ρ (5.2.1, A.2.1)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor, nn
+
+from .coordinate_regressor import DEFAULT_BACKBONE, make_regressor
+from .grid_sampler import pixels_from_coordinates, sample
+from .masks import IMAGE_SIZE, ObjectImages
+
+#: Factor of the matrix α; 2 lets φ in 0..1 reach the whole image, where the thesis has 1.6.
+TRANSLATION_FACTOR: Final = 2.0
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """What G says about the N objects of a scene.
+
+    Attributes:
+        phi: φ = (a, b), shape (N, 2), in 0..1 from the bottom-left corner.
+        corners: bottom-left corners of the objects, as parts of the image's side, shape (N, 2).
+        centres: centres of the objects' boxes, in the same unit, shape (N, 2).
+        iou: IoU(u_i, ũ_i) of A.2.5, shape (N,), in 0..1.
+    """
+
+    phi: NDArray[np.float64]
+    corners: NDArray[np.float64]
+    centres: NDArray[np.float64]
+    iou: NDArray[np.float64]
+
+
+class VisualModule(nn.Module):
+    """G: from images of single objects to coordinates, and back to images."""
+
+    def __init__(
+        self,
+        backbone: str = DEFAULT_BACKBONE,
+        translation_factor: float = TRANSLATION_FACTOR,
+        imagenet: bool = False,
+    ) -> None:
+        super().__init__()
+        self.backbone = backbone
+        self.translation_factor = translation_factor
+        self.regressor = make_regressor(backbone, imagenet)
+
+    def forward(self, images: Tensor, default: Tensor) -> tuple[Tensor, Tensor]:
+        """φ = π(u_i) and ũ_i = ρ(φ, u_i^def).
+
+        Args:
+            images: u_i in 0..1, shape (n, 3, size, size).
+            default: u_i^def, shape (n, channels, size, size).
+
+        Returns:
+            φ, shape (n, 2), and ũ_i, the shape of ``default``.
+        """
+        phi = self.regressor(images)
+        return phi, sample(default, phi, self.translation_factor)
+
+    @torch.inference_mode()
+    def locate(self, objects: ObjectImages) -> Coordinates:
+        """Coordinates of all objects of a scene, in one batch. Call ``eval()`` first."""
+        if len(objects) == 0:
+            empty = np.zeros((0, 2))
+            return Coordinates(empty, empty, empty, np.zeros(0))
+        images = torch.from_numpy(objects.images)
+        default = torch.from_numpy(objects.default_coverage[:, None])
+        phi, reconstructed = self(images, default)
+        size = images.shape[-1]
+        moved = pixels_from_coordinates(phi, size, self.translation_factor)
+        corners = moved.double().numpy() / size
+        return Coordinates(
+            phi=phi.clamp(0.0, 1.0).double().numpy(),
+            corners=corners,
+            centres=corners + 0.5 * objects.crop_sizes / size,
+            iou=intersection_over_union(objects.coverage, reconstructed[:, 0].numpy()),
+        )
+
+
+def intersection_over_union(
+    first: NDArray[np.floating], second: NDArray[np.floating]
+) -> NDArray[np.float64]:
+    """IoU of soft masks in 0..1: Σ min / Σ max over the pixels; 0 where both are empty.
+
+    For masks of zeros and ones this is the usual definition.
+
+    Args:
+        first, second: shape (n, height, width).
+
+    Returns:
+        Shape (n,), in 0..1.
+    """
+    axes = (-2, -1)
+    union = np.maximum(first, second).sum(axes, dtype=np.float64)
+    return np.minimum(first, second).sum(axes, dtype=np.float64) / np.maximum(union, 1e-9)
+
+
+def untrained(size: int = IMAGE_SIZE, backbone: str = DEFAULT_BACKBONE) -> VisualModule:
+    """A module with random weights in evaluation mode, warmed up; for tests and timing."""
+    module = VisualModule(backbone).eval()
+    with torch.inference_mode():
+        module(torch.zeros(1, 3, size, size), torch.zeros(1, 1, size, size))
+    return module
