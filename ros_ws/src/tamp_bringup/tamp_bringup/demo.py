@@ -32,7 +32,7 @@ from planner_node.plan_text import describe_plan
 from scene_graph import format_stacks
 
 from .plan_picture import draw_plan
-from .processes import NodeDiedError, NodeProcesses, use_own_domain
+from .processes import NodeProcesses, use_own_domain
 from .recording import Recording
 from .scene_observer import SceneObserver, SimulationError, true_stacks
 from .task import Failure, TaskResult, goal_text, random_goal, triples
@@ -159,8 +159,7 @@ def main() -> int:
     except KeyboardInterrupt:
         print("\nstopped; the goal was cancelled and the nodes are down")
         return 130
-    except (NodeDiedError, SimulationError) as error:
-        module = error.node.removesuffix("_node") if isinstance(error, NodeDiedError) else "sim"
+    except SimulationError as error:  # before there was a task
         result = TaskResult(
             False,
             options.goal,
@@ -170,7 +169,7 @@ def main() -> int:
             0,
             0,
             dict.fromkeys(("perceive", "plan", "motion", "execute", "total"), 0.0),
-            Failure(module, str(error)),
+            Failure("sim", str(error)),
         )
     finally:
         rclpy.try_shutdown()

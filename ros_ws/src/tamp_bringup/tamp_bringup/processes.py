@@ -54,6 +54,8 @@ class NodeProcesses:
 
     def __enter__(self) -> NodeProcesses:
         self._logs.mkdir(parents=True, exist_ok=True)
+        for node in self._nodes:
+            (self._logs / f"{node}.log").unlink(missing_ok=True)
         try:
             for node in self._nodes:
                 self.start(node)

@@ -12,7 +12,8 @@ from planner_node.client import PlannerClient, PlannerUnavailableError
 from planner_node.goal_parser import parse_goal, resolve_goal
 from scene_graph import SceneGraph
 
-from .scene_observer import SceneObserver, true_stacks
+from .processes import NodeDiedError
+from .scene_observer import SceneObserver, SimulationError, true_stacks
 from .task import Failure, TaskResult, triples
 
 OnFeedback = Callable[[AchieveGoal.Feedback], None]
@@ -35,7 +36,7 @@ def run_task(
 
     Args:
         initial: the ground truth before.
-        check_alive: called now and then; raises if waiting has become pointless.
+        check_alive: called now and then; raises NodeDiedError if waiting has become pointless.
 
     Raises:
         KeyboardInterrupt: after the running goal was cancelled and the arm rests.
@@ -56,15 +57,21 @@ def run_task(
         result = planner.result(timeout=CANCEL_TIMEOUT)
     except (PlannerUnavailableError, TimeoutError) as error:
         failure = failure or Failure("planner", str(error))
+    except NodeDiedError as error:
+        failure = Failure(error.node.removesuffix("_node"), str(error))
     except KeyboardInterrupt:
         planner.cancel()
         planner.result(timeout=CANCEL_TIMEOUT)
         raise
     total = time.monotonic() - started
 
-    final = observer.fresh_truth()
+    try:
+        final = observer.fresh_truth()
+    except SimulationError as error:
+        final = SceneGraph((), frozenset())
+        failure = failure or Failure("sim", str(error))
     stacks = true_stacks(final)
-    reached = stacks is not None and goal_holds(goal, final)
+    reached = goal_holds(goal, final)
     if result is not None and failure is None:
         claimed = result.status in (result.SUCCESS, result.ALREADY_TRUE)
         if not claimed:
@@ -93,4 +100,4 @@ def run_task(
 def goal_holds(goal: str, truth: SceneGraph) -> bool:
     """Whether the true state fulfils a goal text."""
     stacks = true_stacks(truth)
-    return stacks is not None and resolve_goal(parse_goal(goal), truth.names).holds(stacks)
+    return bool(stacks) and resolve_goal(parse_goal(goal), truth.names).holds(stacks)

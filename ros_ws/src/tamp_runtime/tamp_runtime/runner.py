@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import sys
+import traceback
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
@@ -36,7 +37,7 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
     try:
         node = make_node()
         executor.add_node(node)
-        executor.spin()
+        _spin(executor, node)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except (ValueError, OSError) as error:
@@ -54,3 +55,15 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
         if node is not None:
             node.destroy_node()
     return 0
+
+
+def _spin(executor: MultiThreadedExecutor, node: Node) -> None:
+    """Spins until shutdown. An exception of a callback is logged, and the node lives on."""
+    while node.context.ok():
+        try:
+            executor.spin()
+        except (KeyboardInterrupt, ExternalShutdownException):
+            return
+        except Exception:
+            if node.context.ok():
+                node.get_logger().error(f"a callback failed:\n{traceback.format_exc()}")
