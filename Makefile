@@ -5,7 +5,6 @@ SHELL := /bin/bash
 PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
-SOURCES := $(shell find ros_ws/src -name '*.py' -o -name 'package.xml' -o -name 'setup.cfg' 2>/dev/null)
 
 .PHONY: help setup demo test lint lint-docker clean lock train-visual eval-visual eval-tasks results reference
 
@@ -37,9 +36,9 @@ train-visual: setup  ## train the visual module G without labels; resumable
 eval-visual: setup  ## scene graph accuracy on unseen states; QUICK=1
 	@$(RUN) python benchmarks/eval_visual.py $(ARGS)
 
-eval-tasks: setup  ## success from pixels to tower; N= BLOCKS= RESUME=1 QUICK=1
+eval-tasks: setup  ## success from pixels to tower; N= BLOCKS= RTF= RESUME=1 QUICK=1
 	@$(RUN) python benchmarks/eval_tasks.py $(if $(N),--n $(N)) $(if $(BLOCKS),--blocks $(BLOCKS)) \
-	  $(if $(RESUME),--resume) $(ARGS)
+	  $(if $(RTF),--real-time-factor $(RTF)) $(if $(RESUME),--resume)
 
 results: setup  ## docs/results.md from the result files
 	@$(RUN) python benchmarks/write_results_page.py

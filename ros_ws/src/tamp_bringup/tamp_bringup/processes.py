@@ -92,25 +92,28 @@ class NodeProcesses:
 
     def stop(self, node: str) -> int:
         """Stops one node with SIGINT, and by force if it takes too long; returns its exit code."""
-        process = self._processes.pop(node)
-        self._signal(process, signal.SIGINT)
-        try:
-            return process.wait(_STOP_TIMEOUT)
-        except subprocess.TimeoutExpired:
-            self._signal(process, signal.SIGKILL)
-            return process.wait(_STOP_TIMEOUT)
+        self._signal(self._processes[node], signal.SIGINT)
+        return self._wait(node)
 
     def stop_all(self) -> dict[str, int]:
-        """Stops every node that runs; returns exit codes by node."""
+        """Stops every node that runs, all at once; returns exit codes by node."""
         for process in self._processes.values():
             self._signal(process, signal.SIGINT)
-        return {node: self.stop(node) for node in reversed(list(self._processes))}
+        return {node: self._wait(node) for node in list(self._processes)}
 
     def check(self) -> None:
         """Raises NodeDiedError if a node has ended by itself."""
         for node, process in self._processes.items():
             if (code := process.poll()) is not None:
                 raise NodeDiedError(node, code, self._logs / f"{node}.log")
+
+    def _wait(self, node: str) -> int:
+        process = self._processes.pop(node)
+        try:
+            return process.wait(_STOP_TIMEOUT)
+        except subprocess.TimeoutExpired:
+            self._signal(process, signal.SIGKILL)
+            return process.wait(_STOP_TIMEOUT)
 
     @staticmethod
     def _signal(process: subprocess.Popen[bytes], number: signal.Signals) -> None:
