@@ -74,11 +74,9 @@ def block_poses(
         for item in surfaces
     ]
     heights = [top - bottom for bottom, top in vertical]
-    common = _agreed([*widths, *(Interval(h - AGREEMENT, h + AGREEMENT) for h in heights)])
-    if common is not None:  # cubes, as far as anyone can tell; heights are known better than widths
-        common = float(np.median(heights))
-    else:
-        common = _agreed(widths)
+    cube = _agreed([*widths, *(Interval(h - AGREEMENT, h + AGREEMENT) for h in heights)])
+    # If they are cubes, as far as anyone can tell: heights are known better than widths.
+    common = _agreed(widths) if cube is None else float(np.median(heights))
     return [
         _pose(surface, *vertical[index], widths[index].middle if common is None else common)
         for index, surface in enumerate(surfaces)

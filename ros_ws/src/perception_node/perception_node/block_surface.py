@@ -129,20 +129,29 @@ def _front_plane(points: Array, normals: Array) -> tuple[float, float, float]:
     yaw = quarter + turn * np.pi / 2
     front = float(np.median((points[upright][turns == turn] @ block_frame(yaw))[:, 0]))
     tilt, tolerance = 0.0, 2.0 * SURFACE_TOLERANCE
-    for _ in range(4):
-        in_frame = points @ block_frame(yaw)
-        near = np.abs(in_frame[:, 0] - front) < tolerance
-        if np.count_nonzero(near) < MIN_FACE_POINTS or np.ptp(in_frame[near, 1]) < 0.004:
+    for _ in range(3):
+        x, y, z = (points @ block_frame(yaw)).T
+        near = np.abs(x - front) < tolerance
+        if np.count_nonzero(near) < MIN_FACE_POINTS:
             break
-        centred = in_frame[near] - in_frame[near].mean(0)
-        slopes, *_ = np.linalg.lstsq(centred[:, 1:], centred[:, 0], rcond=None)
-        yaw -= float(np.arctan(slopes[0]))
-        tilt = float(np.abs(np.arctan(slopes[1])))
-        across = (points[near] @ block_frame(yaw))[:, 0]
-        front = float(np.median(across))
+        x, y, z = x[near] - front, y[near] - y[near].mean(), z[near] - z[near].mean()
+        across, along = _slopes(x, y, z)
+        yaw -= float(np.arctan(across))
+        tilt = float(np.abs(np.arctan(along)))
+        front = float((points[near] @ block_frame(yaw)[:, 0]).mean())
         # As narrow as the depth's noise allows, so that the ends of other faces drop out.
-        tolerance = float(np.clip(4.0 * np.median(np.abs(across - front)), 2e-4, tolerance))
+        noise = float((x - across * y - along * z).std())
+        tolerance = float(np.clip(4.0 * noise, 2e-4, tolerance))
     return float((yaw + np.pi) % (2.0 * np.pi) - np.pi), front, tilt
+
+
+def _slopes(x: Array, y: Array, z: Array) -> tuple[float, float]:
+    """Least squares x = across·y + along·z + constant, for y and z of zero mean, shapes (n,)."""
+    yy, yz, zz, xy, xz = y @ y, y @ z, z @ z, x @ y, x @ z
+    determinant = yy * zz - yz * yz
+    if determinant <= 1e-6 * (yy + zz + 1e-12) ** 2:
+        return 0.0, 0.0
+    return float((xy * zz - xz * yz) / determinant), float((xz * yy - xy * yz) / determinant)
 
 
 def _measure_box(

@@ -19,7 +19,8 @@ class PinholeCamera:
 
     Attributes:
         intrinsics: K, shape (3, 3) [px].
-        world_from_optical: pose of the optical frame (x right, y down, z forward), shape (4, 4) [m].
+        world_from_optical: pose of the optical frame (x right, y down, z forward), shape (4, 4)
+            [m].
         width, height: image size [px].
     """
 
@@ -83,7 +84,7 @@ class PinholeCamera:
         return np.stack([u, v], axis=-1)
 
     def rays_world(self, pixels: ArrayLike) -> Array:
-        """Directions through pixels, (..., 2) [px] -> (..., 3), of unit length along the optical axis.
+        """Directions through pixels, (..., 2) [px] -> (..., 3), of length 1 along the optical axis.
 
         A point of depth d on the ray of a pixel is ``position_world + d * ray``.
         """

@@ -37,8 +37,8 @@ class PointingRegressor(nn.Module):
         )
         self.heat = nn.Conv2d(channels, 2, 1)
         # Uniform heat maps and φ = (0.5, 0.5) at the start: neither corner is preferred.
-        nn.init.zeros_(self.heat.weight)
-        nn.init.zeros_(self.heat.bias)
+        for parameter in self.heat.parameters():
+            nn.init.zeros_(parameter)
         self.scale = nn.Parameter(torch.ones(2))
         self.offset = nn.Parameter(torch.zeros(2))
 

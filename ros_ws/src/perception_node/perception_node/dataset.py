@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rendered scenes on disk, and the objects in them as training material.
 
-What ``ros2 run sim_node render_dataset`` writes: a folder of shards ``shard_0000.npz``, ``shard_0001.npz``, … (numpy, read without
-pickle) with these arrays over its N scenes:
+What ``ros2 run sim_node render_dataset`` writes: a folder of shards ``shard_0000.npz``, … (numpy,
+read without pickle) with these arrays over its N scenes:
 
 ===============  =================  ======================================================
 rgb              (N, h, w, 3) u8    what the camera sees
@@ -104,11 +104,12 @@ def read_crops(folder: Path) -> ObjectCrops:
         arrays = _read_shard(path, ("rgb", "labels"))
         for rgb, labels in zip(arrays["rgb"], arrays["labels"]):
             objects = object_images(rgb, labels)
-            fits = (objects.crop_sizes <= CROP_SIZE).all(1)
+            largest: NDArray[np.intp] = objects.crop_sizes.max(axis=1)
+            fits = np.flatnonzero(largest <= CROP_SIZE)
             pixels.append(objects.default_images[fits, :, -CROP_SIZE:, :CROP_SIZE])
             sizes.append(objects.crop_sizes[fits])
             corners.append(_corners(objects.coverage[fits]))
-            starts.append(starts[-1] + int(fits.sum()))
+            starts.append(starts[-1] + len(fits))
     if starts[-1] == 0:
         raise DatasetError(f"{folder} shows no objects of at most {CROP_SIZE} px")
     return ObjectCrops(

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_graph import COLORS, UP, SceneGraph, base_index
+from scene_graph import COLORS, SceneGraph, base_index
 
 from .status import Status
 
@@ -53,10 +53,9 @@ def draw_scene_graph(
     for relation in sorted(graph.relations):
         if relation.subject in boxes and relation.object in boxes:
             _arrow(canvas, boxes[relation.subject], boxes[relation.object])
-        elif relation.predicate == UP and relation.subject in boxes:
-            if base_index(relation.object) is not None:
-                left, _, right, bottom = boxes[relation.subject]
-                _text(canvas, relation.object, ((left + right) // 2 - 22, bottom + 14))
+        elif relation.subject in boxes and base_index(relation.object) is not None:
+            left, _, right, bottom = boxes[relation.subject]
+            _text(canvas, relation.object, ((left + right) // 2 - 22, bottom + 14))
     verdict = f"{status.name.replace('_', ' ').lower()}  {graph.confidence:.2f}"
     _text(canvas, verdict, (6, 14), _CONFIDENT if status is Status.CONFIDENT else _DOUBT)
     for number, line in enumerate(_wrapped(message, size[0] // 7)):

@@ -27,7 +27,7 @@ class StampedSet:
 
 
 class FramePairing:
-    """Collects messages by stamp and hands out each complete set once, never an older after a newer."""
+    """Collects messages by stamp; hands out each complete set once, the newest only."""
 
     def __init__(self, streams: Sequence[str]) -> None:
         self._streams = frozenset(streams)

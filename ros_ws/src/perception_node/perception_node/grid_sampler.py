@@ -44,5 +44,5 @@ def sample(default: Tensor, coordinates: Tensor, factor: float) -> Tensor:
 
 
 def pixels_from_coordinates(coordinates: Tensor, size: int, factor: float) -> Tensor:
-    """Translation [px] that φ stands for in a square image of ``size``: right and up, shape (n, 2)."""
+    """Translation that φ stands for in a square image of ``size``, right and up [px], (n, 2)."""
     return coordinates * (0.5 * factor * size)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -72,23 +73,31 @@ def object_images(
         size: side of the images [px].
     """
     found = object_labels(labels)
-    shape = (len(found), size, size)
-    coverage = np.zeros(shape, np.float32)
-    images = np.zeros((*shape, 3), np.float32)
-    default_coverage, default_images = np.zeros_like(coverage), np.zeros_like(images)
+    rgb, labels, source, target = _aligned(rgb, labels, size)
+    images = np.zeros((len(found), size, size, 3), np.float32)
+    coverage = np.zeros(images.shape[:3], np.float32)
+    default_images, default_coverage = np.zeros_like(images), np.zeros_like(coverage)
     crop_sizes = np.zeros((len(found), 2), np.intp)
     for index, label in enumerate(found):
         mask = labels == label
-        image, part = scale_into_corner(rgb, mask, size)
-        images[index], coverage[index] = image, part
+        top, bottom = _block_range(mask.any(1), source)
+        left, right = _block_range(mask.any(0), source)
+        crop = np.s_[top * source : bottom * source, left * source : right * source]
+        mask, pixels = mask[crop], rgb[crop]
+        scaled_size = ((right - left) * target, (bottom - top) * target)
+        image, part = _scaled(pixels, mask, scaled_size)
+        # Rows count from the lower edge, the origin of φ.
+        low = size - (len(labels) // source - bottom) * target
+        box = np.s_[low - scaled_size[1] : low, left * target : left * target + scaled_size[0]]
+        images[index][box], coverage[index][box] = image, part
         clean = largest_part(mask)
-        if not np.array_equal(clean, mask):
-            image, part = scale_into_corner(rgb, clean, size)
+        if clean is not mask:
+            image, part = _scaled(pixels, clean, scaled_size)
         rows, columns = np.flatnonzero(part.any(1)), np.flatnonzero(part.any(0))
-        height, width = rows[-1] - rows[0] + 1, columns[-1] - columns[0] + 1
-        box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-        default_images[index, size - height :, :width] = image[box]
-        default_coverage[index, size - height :, :width] = part[box]
+        width, height = columns[-1] - columns[0] + 1, rows[-1] - rows[0] + 1
+        tight = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        default_images[index, size - height :, :width] = image[tight]
+        default_coverage[index, size - height :, :width] = part[tight]
         crop_sizes[index] = width, height
     return ObjectImages(
         labels=found,
@@ -100,19 +109,38 @@ def object_images(
     )
 
 
-def scale_into_corner(
-    rgb: NDArray[np.uint8], mask: NDArray[np.bool_], size: int
-) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Masked image and coverage in 0..1, scaled by area to fit the bottom-left of a square.
+def _aligned(
+    rgb: NDArray[np.uint8], labels: NDArray[np.integer], size: int
+) -> tuple[NDArray[np.uint8], NDArray[np.integer], int, int]:
+    """Image and labels padded (above, right) to whole blocks, and the sides of a block.
+
+    Scaling the longer side to ``size`` turns each block of ``source`` pixels into ``target``
+    pixels, so parts of the image along block borders can be scaled on their own.
 
     Returns:
-        Shapes (size, size, 3) and (size, size).
+        rgb, labels, source, target.
     """
-    height, width = mask.shape
-    scale = size / max(height, width)
-    inner = (round(width * scale), round(height * scale))
-    channels = np.dstack([rgb, np.full_like(mask, 255, np.uint8)]) * mask[..., None]
-    scaled = cv2.resize(channels, inner, interpolation=cv2.INTER_AREA).astype(np.float32) / 255.0
-    square = np.zeros((size, size, 4), np.float32)
-    square[size - inner[1] :, : inner[0]] = scaled
-    return square[..., :3], square[..., 3]
+    height, width = labels.shape
+    common = math.gcd(max(height, width), size)
+    source, target = max(height, width) // common, size // common
+    above, right = -height % source, -width % source
+    if above or right:
+        rgb = np.pad(rgb, ((above, 0), (0, right), (0, 0)))
+        labels = np.pad(labels, ((above, 0), (0, right)))
+    return rgb, labels, source, target
+
+
+def _block_range(used: NDArray[np.bool_], source: int) -> tuple[int, int]:
+    """First block with a pixel of the object, and the one after the last."""
+    pixels = np.flatnonzero(used)
+    return int(pixels[0]) // source, int(pixels[-1]) // source + 1
+
+
+def _scaled(
+    rgb: NDArray[np.uint8], mask: NDArray[np.bool_], size: tuple[int, int]
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Masked image and coverage in 0..1, scaled by area to (width, height)."""
+    masked = cv2.bitwise_and(rgb, rgb, mask=mask.astype(np.uint8)).astype(np.float32)
+    image = cv2.resize(masked, size, interpolation=cv2.INTER_AREA)
+    part = cv2.resize(mask.astype(np.float32), size, interpolation=cv2.INTER_AREA)
+    return np.divide(image, 255.0, dtype=np.float32), part.astype(np.float32, copy=False)

@@ -71,7 +71,8 @@ class PerceptionNode(Node):
         self._values = declare_parameters(self, PARAMETERS, self._parameters_changed)
         torch.set_num_threads(self._values["threads"])
         weights = Path(self._values["weights"] or DEFAULT_WEIGHTS)
-        self._perception = Perception(load_weights(weights), config_from_parameters(self._values))
+        module = load_weights(weights)
+        self._perception = Perception(module, config_from_parameters(self._values))
         self._pairing = FramePairing(tuple(STREAMS))
         self._info: CameraInfo | None = None
         self._extrinsics: TransformStamped | None = None
@@ -80,7 +81,7 @@ class PerceptionNode(Node):
         self._incomplete_since: float | None = None
         self._create_interfaces()
         self.get_logger().info(
-            f"weights {weights} (backbone {self._perception.module.backbone}), "
+            f"weights {weights} (backbone {module.backbone}), "
             f"{len(self._perception.config.stack_positions)} places"
         )
 
@@ -205,16 +206,21 @@ class PerceptionNode(Node):
         return self._extrinsics.header.frame_id if self._extrinsics else "world"
 
     def _publish(self, perceived: Perceived, header: Header, arrival: float, picture: Any) -> None:
+        if not self.context.ok():
+            return  # the node is being stopped
         seconds = time.perf_counter() - arrival
         self._graphs.publish(perceived_to_message(perceived, header, seconds))
         if perceived.status is not self._status:
             self._status = perceived.status
-            log = self.get_logger()
-            say = log.info if perceived.status is Status.CONFIDENT else log.warning
-            say(f"{perceived.status.name}: {perceived.message or 'the scene is clear'}")
+            # One call a severity: rclpy's logger refuses two from the same line.
+            if perceived.status is Status.CONFIDENT:
+                self.get_logger().info("CONFIDENT: the scene is clear")
+            else:
+                self.get_logger().warning(f"{perceived.status.name}: {perceived.message}")
         if picture is not None and self._drawings.get_subscription_count():
+            rgb, labels = picture
             drawing = draw_scene_graph(
-                *picture, perceived.graph, perceived.status, perceived.message
+                rgb, labels, perceived.graph, perceived.status, perceived.message
             )
             self._drawings.publish(image_from_array(drawing, "rgb8", header))
         if self._markers.get_subscription_count():

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +26,7 @@ from .block_poses import BlockPose, block_poses
 from .block_surface import BlockSurface, measure_block
 from .camera_model import PinholeCamera
 from .errors import BadImageError, PerceptionError
-from .masks import ObjectImages, object_images
+from .masks import ObjectImages, largest_part, object_images
 from .naming import color_names, mean_colors, unique_names
 from .shape_outline import shape_from_outline
 from .stability import StabilityLimits, instability
@@ -34,7 +34,7 @@ from .stack_count import count_stacks
 from .stacks_from_coordinates import assign_places, stacks_from_coordinates, with_empty_places
 from .status import Status
 from .visibility import PlaceVolumes, box_region, hidden_pixels
-from .visual_module import Coordinates, VisualModule
+from .visual_module import Coordinates
 
 
 @dataclass(frozen=True)
@@ -62,6 +62,12 @@ class PerceptionConfig:
     limits: StabilityLimits = field(default_factory=StabilityLimits)
 
 
+class Locator(Protocol):
+    """Whatever finds the coordinates of objects: the visual module, or the baseline."""
+
+    def locate(self, objects: ObjectImages) -> Coordinates: ...
+
+
 @dataclass(frozen=True)
 class Perceived:
     """A scene graph, whether it can be used, and a sentence saying why not (or empty)."""
@@ -74,8 +80,8 @@ class Perceived:
 class Perception:
     """Interprets frames. Keeps nothing between them, so it can be used from several threads."""
 
-    def __init__(self, module: VisualModule, config: PerceptionConfig | None = None) -> None:
-        self.module = module.eval()
+    def __init__(self, module: Locator, config: PerceptionConfig | None = None) -> None:
+        self.module = module
         self.config = config or PerceptionConfig()
 
     def perceive(
@@ -114,7 +120,7 @@ class Perception:
         depth: NDArray[np.floating] | None,
         camera: PinholeCamera | None,
     ) -> Perceived:
-        hidden = self._hidden_shares(labels, depth, camera)
+        hidden_mask, hidden = self._hidden(labels, depth, camera)
         objects = object_images(rgb, labels)
         if len(objects) == 0:
             if verdict := self._occlusion(hidden):
@@ -122,9 +128,9 @@ class Perception:
             return self.rejected(
                 Status.NO_OBJECTS, "no block is seen; put blocks on the table, or check the camera"
             )
-        masks = [labels == label for label in objects.labels]
+        masks = [largest_part(labels == label) for label in objects.labels]
         located = self.module.locate(objects)
-        count = min(count_stacks(np.isin(labels, objects.labels)), len(objects))
+        count = min(count_stacks(np.any(masks, axis=0)), len(objects))
         stacks = stacks_from_coordinates(located.corners, count)
         verdicts: list[tuple[Status, str]] = []
         if verdict := self._occlusion(hidden):
@@ -143,7 +149,7 @@ class Perception:
         poses: list[BlockPose] | None = None
         if surfaces is not None and depth is not None and camera is not None:
             poses = block_poses(surfaces, columns, self._table_heights(len(columns)))
-            confidence = confidence * self._visible_shares(poses, labels, depth, camera)
+            confidence = confidence * _visible_shares(poses, hidden_mask, camera)
             self._check_places(poses, names, columns, on_places is not None, verdicts)
         items = _objects(objects, located, names, shapes, poses, confidence)
         graph = SceneGraph(
@@ -168,22 +174,21 @@ class Perception:
             )
         return Perceived(graph, Status.CONFIDENT)
 
-    def _hidden_shares(
+    def _hidden(
         self,
         labels: NDArray[np.integer],
         depth: NDArray[np.floating] | None,
         camera: PinholeCamera | None,
-    ) -> list[float]:
-        """The hidden share of the column over each place, 0..1."""
-        volumes = self._volumes()
-        if depth is None or camera is None or volumes is None:
-            return []
-        regions = [volumes.region(camera, place) for place in range(len(volumes.positions_world))]
+    ) -> tuple[NDArray[np.bool_] | None, list[float]]:
+        """Pixels where something hides the places, and the hidden share of each column, 0..1."""
+        config = self.config
+        if depth is None or camera is None or not config.stack_positions:
+            return None, []
+        positions = np.array(config.stack_positions, dtype=np.float64)
+        volumes = PlaceVolumes(positions, config.column_half_width, config.column_height)
+        regions = [volumes.region(camera, place) for place in range(len(positions))]
         hidden = hidden_pixels(labels, depth, camera, volumes, np.any(regions, axis=0))
-        return [
-            np.count_nonzero(hidden & region) / max(1, np.count_nonzero(region))
-            for region in regions
-        ]
+        return hidden, [_share(hidden, region) for region in regions]
 
     def _occlusion(self, hidden: Sequence[float]) -> str:
         if max(hidden, default=0.0) <= self.config.max_hidden:
@@ -193,13 +198,6 @@ class Perception:
             f"something that is not a block hides {hidden[worst]:.0%} of {base_name(worst)}; look "
             "again when it is gone"
         )
-
-    def _volumes(self) -> PlaceVolumes | None:
-        config = self.config
-        if not config.stack_positions:
-            return None
-        positions = np.array(config.stack_positions, dtype=np.float64)
-        return PlaceVolumes(positions, config.column_half_width, config.column_height)
 
     def _on_places(
         self,
@@ -214,7 +212,7 @@ class Perception:
             return None
         side = max(camera.width, camera.height)
         seen = [float(located.centres[stack[0], 0]) for stack in stacks]
-        projected = (camera.project(np.array(places))[:, 0] + 0.5) / side
+        projected = (camera.project(places)[:, 0] + 0.5) / side
         if np.any(np.diff(projected) <= 0.0) or not np.isfinite(projected).all():
             raise BadImageError(
                 "the places are not in order from the left of the image; check the parameter "
@@ -230,24 +228,6 @@ class Perception:
     def _table_heights(self, count: int) -> list[float]:
         heights = [position[2] for position in self.config.stack_positions]
         return heights if len(heights) == count else [heights[0] if heights else 0.0] * count
-
-    def _visible_shares(
-        self,
-        poses: Sequence[BlockPose],
-        labels: NDArray[np.integer],
-        depth: NDArray[np.floating],
-        camera: PinholeCamera,
-    ) -> NDArray[np.float64]:
-        """How much of each block's outline nothing without a label hides, shape (N,), 0..1."""
-        volumes = self._volumes()
-        if volumes is None:
-            return np.ones(len(poses))
-        shares = []
-        for pose in poses:
-            region = box_region(camera, pose.position_world, pose.size, pose.yaw)
-            hidden = hidden_pixels(labels, depth, camera, volumes, region)
-            shares.append(1.0 - np.count_nonzero(hidden) / max(1, np.count_nonzero(region)))
-        return np.array(shares)
 
     def _check_places(
         self,
@@ -281,6 +261,20 @@ def _check_frame(rgb: NDArray[Any], labels: NDArray[Any], depth: NDArray[Any] | 
         raise BadImageError(
             f"depth is {_size(depth)} but the image is {_size(rgb)}; register depth to colour"
         )
+
+
+def _share(hidden: NDArray[np.bool_], region: NDArray[np.bool_]) -> float:
+    return int(np.count_nonzero(hidden & region)) / max(1, int(np.count_nonzero(region)))
+
+
+def _visible_shares(
+    poses: Sequence[BlockPose], hidden: NDArray[np.bool_] | None, camera: PinholeCamera
+) -> NDArray[np.float64]:
+    """How much of each block's outline nothing without a label hides, shape (N,), 0..1."""
+    if hidden is None or not hidden.any():
+        return np.ones(len(poses))
+    regions = [box_region(camera, item.position_world, item.size, item.yaw) for item in poses]
+    return np.array([1.0 - _share(hidden, region) for region in regions])
 
 
 def _size(image: NDArray[Any]) -> str:

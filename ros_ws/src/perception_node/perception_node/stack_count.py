@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Final
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,20 +30,12 @@ def count_stacks(mask: NDArray[np.bool_]) -> int:
     height, width = mask.shape
     narrow = max(1, round(NOISE_WIDTH * width))
     rows = max(1, round(NOISE_ROWS * height))
-    counts = np.array([_count_runs(row, narrow) for row in mask])
+    line = np.ones((1, narrow + 1), np.uint8)
+    padded = np.pad(mask.astype(np.uint8), ((0, 0), (narrow + 1, narrow + 1)))
+    closed = cv2.morphologyEx(padded, cv2.MORPH_CLOSE, line)
+    opened = cv2.morphologyEx(closed, cv2.MORPH_OPEN, line)
+    counts = np.count_nonzero(np.diff(opened.astype(np.int8), axis=1) > 0, axis=1)
     for count in range(counts.max(initial=0), 0, -1):
         if np.count_nonzero(counts >= count) >= rows:
             return count
     return int(mask.any())
-
-
-def _count_runs(row: NDArray[np.bool_], narrow: int) -> int:
-    """Runs wider than ``narrow`` pixels, after gaps of up to ``narrow`` pixels are closed."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], row, [False]]).astype(np.int8)))
-    starts, ends = edges[0::2], edges[1::2]
-    if len(starts) == 0:
-        return 0
-    parted = starts[1:] - ends[:-1] > narrow
-    starts = starts[np.concatenate([[True], parted])]
-    ends = ends[np.concatenate([parted, [True]])]
-    return int(np.count_nonzero(ends - starts > narrow))

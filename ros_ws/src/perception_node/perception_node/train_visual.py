@@ -22,7 +22,7 @@ from tqdm import tqdm
 from .coordinate_regressor import BACKBONES
 from .dataset import read_crops
 from .errors import PerceptionError
-from .training import Trainer, TrainingConfig
+from .training import Trainer, TrainingConfig, bfloat16_helps
 from .weights import DEFAULT_WEIGHTS, save_weights
 
 CHECKPOINT = "checkpoint.pt"
@@ -95,7 +95,7 @@ def _parse(arguments: list[str] | None) -> argparse.Namespace:
     )
     for field in fields(TrainingConfig):
         flag = f"--{field.name.replace('_', '-')}"
-        default: Any = field.default
+        default: Any = bfloat16_helps() if field.name == "bfloat16" else field.default
         if isinstance(default, bool):
             action = argparse.BooleanOptionalAction
             parser.add_argument(flag, action=action, default=default, help=field.name)

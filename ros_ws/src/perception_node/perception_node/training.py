@@ -24,7 +24,7 @@ from .visual_module import TRANSLATION_FACTOR, VisualModule
 
 @dataclass(frozen=True)
 class TrainingConfig:
-    """Hyper-parameters; batch size, learning rate and weight decay are those of Table A.1.
+    """Hyper-parameters. Table A.1 has batches of 16 images, a rate of 1e-3, the same decay.
 
     Attributes:
         backbone: of the coordinate regressor.
@@ -36,23 +36,31 @@ class TrainingConfig:
         shift_share: share of objects that are put anywhere in the image; the others are shifted
             together with their scene.
         damage_share: share of inputs hit by each kind of damage; targets are never damaged.
-        bfloat16: autocast of the regressor.
+        bfloat16: autocast of the regressor; faster only where the processor has AMX.
         checkpoint_every: steps between checkpoints.
         seed: of weights, batches and augmentation.
     """
 
     backbone: str = DEFAULT_BACKBONE
     imagenet: bool = False
-    steps: int = 2000
-    batch_scenes: int = 16
-    learning_rate: float = 1e-3
+    steps: int = 2400
+    batch_scenes: int = 6
+    learning_rate: float = 2e-3
     weight_decay: float = 1e-4
     translation_factor: float = TRANSLATION_FACTOR
     shift_share: float = 0.7
     damage_share: float = 0.3
-    bfloat16: bool = True
+    bfloat16: bool = False
     checkpoint_every: int = 200
     seed: int = 0
+
+
+def bfloat16_helps() -> bool:
+    """Whether this processor multiplies bfloat16 faster than float32 (AMX)."""
+    try:
+        return "amx_bf16" in Path("/proc/cpuinfo").read_text()
+    except OSError:
+        return False
 
 
 class Trainer:
@@ -63,6 +71,7 @@ class Trainer:
         self.crops = crops
         torch.manual_seed(config.seed)
         self.module = VisualModule(config.backbone, config.translation_factor, config.imagenet)
+        self.module.to(memory_format=torch.channels_last)  # a third faster on the CPU
         self.optimizer = torch.optim.AdamW(
             self.module.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay
         )
@@ -110,7 +119,7 @@ class Trainer:
         return float(loss.detach())
 
     def _batch(self) -> tuple[Tensor, Tensor, Tensor]:
-        """Damaged inputs (n, 3, s, s), targets u_i (scenes, objects, 3, s, s), u_def (n, 3, s, s)."""
+        """Damaged inputs and u_def, shape (n, 3, s, s); targets u_i, (scenes, objects, 3, s, s)."""
         rng, config = self.generator, self.config
         starts = self.crops.scenes
         counts = starts[1:] - starts[:-1]
@@ -125,6 +134,7 @@ class Trainer:
         inputs = place_crops(damaged(pixels, sizes, config.damage_share, rng), corners)
         inputs = speckled(inputs, config.damage_share, rng)
         default = place_crops(pixels, torch.zeros_like(corners))
+        inputs = inputs.contiguous(memory_format=torch.channels_last)
         return inputs, target.unflatten(0, (-1, objects)), default
 
     def save(self, path: Path) -> None:
@@ -175,7 +185,7 @@ class Trainer:
 def _shifted(
     corners: Tensor, sizes: Tensor, objects: int, share: float, generator: torch.Generator
 ) -> Tensor:
-    """New corners [px]: each scene shifted as a whole, and ``share`` of the objects put anywhere."""
+    """New corners [px]: scenes shifted as a whole, and ``share`` of the objects put anywhere."""
     room = IMAGE_SIZE - sizes
     grouped = corners.unflatten(0, (-1, objects))
     low = -grouped.amin(1)

@@ -66,7 +66,15 @@ def box_region(
     size: tuple[float, float, float],
     yaw: float = 0.0,
 ) -> NDArray[np.bool_]:
-    """Pixels behind which an upright box may be, shape (height, width); all False behind the camera."""
+    """Pixels behind which an upright box may be; none if part of it is behind the camera.
+
+    Args:
+        centre_world, size: of the box [m].
+        yaw: about world z [rad].
+
+    Returns:
+        Shape (height, width).
+    """
     corners = np.array([[i, j, k] for i in (-0.5, 0.5) for j in (-0.5, 0.5) for k in (-0.5, 0.5)])
     corners = corners * size
     c, s = np.cos(yaw), np.sin(yaw)
