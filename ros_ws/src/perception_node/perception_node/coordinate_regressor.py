@@ -14,7 +14,6 @@ from typing import Final
 
 import torch
 from torch import Tensor, nn
-from torchvision import models
 
 
 class PointingRegressor(nn.Module):
@@ -102,5 +101,8 @@ def make_regressor(backbone: str, imagenet: bool = False) -> nn.Module:
         if imagenet:
             raise ValueError(f"there are no ImageNet weights of the backbone {backbone!r}")
         return PointingRegressor()
+    # torchvision takes longer to import than the rest of the node, and the default needs none of it.
+    from torchvision import models
+
     build = {"resnet18": models.resnet18, "resnet34": models.resnet34}[backbone]
     return ResNetRegressor(build, "DEFAULT" if imagenet else None)
