@@ -101,7 +101,7 @@ def make_regressor(backbone: str, imagenet: bool = False) -> nn.Module:
         if imagenet:
             raise ValueError(f"there are no ImageNet weights of the backbone {backbone!r}")
         return PointingRegressor()
-    # torchvision takes longer to import than the rest of the node, and the default needs none of it.
+    # torchvision is slow to import, and the default backbone needs none of it.
     from torchvision import models
 
     build = {"resnet18": models.resnet18, "resnet34": models.resnet34}[backbone]
