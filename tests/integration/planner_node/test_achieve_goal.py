@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
 from planner_neighbours import (
+    PERIOD,
     FakeMotion,
     fail,
     ignore,
@@ -152,7 +153,7 @@ def test_the_motion_is_confirmed_by_a_later_image_only(make_bench: Any) -> None:
     bench = make_bench(obey_blindly, perceive_timeout=1.0)
     result = bench.achieve(GOAL)
     assert (result.status, result.module) == (Status.NOT_CONFIDENT, "perception")
-    assert "before the last motion ended" in result.message
+    assert "before the last motion" in result.message
     assert result.moves_executed == 3
 
 
@@ -235,13 +236,34 @@ def test_a_silent_motion_node_is_named_and_told_to_stop(make_bench: Any, behavio
 def test_a_restarted_motion_node_has_lost_the_plan(make_bench: Any) -> None:
     def restart(motion: FakeMotion, plan: SymbolicPlan) -> None:
         motion.report(plan.plan_id, MotionStatus.EXECUTING)
-        motion.report("", MotionStatus.IDLE)
+        while not motion.stop_requested.wait(PERIOD) and motion.context.ok():
+            motion.report("", MotionStatus.IDLE)
 
     bench = make_bench(restart)
     result = bench.achieve(GOAL)
     assert (result.status, result.module) == (Status.MOTION_SILENT, "motion")
     assert "restarted" in result.message
     assert bench.achieve(GOAL).status == Status.SUCCESS
+
+
+def test_without_a_motion_node_the_plan_is_given_up_soon(
+    make_bench: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("planner_node.motion_link.DISCOVERY_SECONDS", 1.0)
+    bench = make_bench()
+    bench.ros.remove(bench.motion)
+    result = bench.achieve(GOAL, timeout=10.0)
+    assert result.status == Status.MOTION_SILENT
+    assert "nobody subscribes to symbolic_plan" in result.message
+
+
+def test_the_scene_is_looked_at_after_the_request(make_bench: Any) -> None:
+    bench = make_bench(perceive_timeout=1.0)
+    bench.wait_for_scene()
+    bench.perception.silent = True
+    result = bench.achieve(GOAL)
+    assert (result.status, result.module) == (Status.NOT_CONFIDENT, "perception")
+    assert "before the last motion or the request" in result.message
 
 
 def test_an_idle_report_before_the_plan_is_taken_up_means_nothing(make_bench: Any) -> None:

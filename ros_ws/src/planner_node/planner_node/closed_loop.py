@@ -6,6 +6,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import NoReturn
 
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.msg import MotionStatus, SymbolicPlan
@@ -55,6 +56,7 @@ class ClosedLoop:
         self._report = report
         self._cancelled = cancelled
         self._shut_down = shut_down
+        self._requested = scenes.now()
         self._feedback = AchieveGoal.Feedback()
         #: Filled as the run goes on, so that it can be given even after a defect.
         self.result = AchieveGoal.Result()
@@ -101,10 +103,11 @@ class ClosedLoop:
         return AchieveGoal.Result.SUCCESS, f"the camera confirms '{goal}': {seen}"
 
     def _look(self, stage: int, message: str, needed: frozenset[str] = frozenset()) -> Scene:
-        """The scene after the last motion, with the ``needed`` objects in it."""
+        """The scene after the request and the last motion, with the ``needed`` objects in it."""
         self._tell(stage, message)
+        after = max(self._requested, self._motion.last_end)
         with self._timed("perceive_seconds"):
-            scene = self._scenes.wait(self._cancelled, self._motion.last_end, needed)
+            scene = self._scenes.wait(self._cancelled, after, needed)
         self.result.final = scene.message
         return scene
 
@@ -135,7 +138,7 @@ class ClosedLoop:
         try:
             end = self._motion.follow(self._on_status, self._cancelled)
             if end is None:
-                end = self._stop(plan)
+                self._stop(plan)
         except CancelledError:
             raise
         except Exception:
@@ -151,7 +154,7 @@ class ClosedLoop:
             self.result.execute_seconds += max(0.0, elapsed - last.optimisation_seconds)
         return end
 
-    def _stop(self, plan: SymbolicPlan) -> MotionStatus:
+    def _stop(self, plan: SymbolicPlan) -> NoReturn:
         """Stops the motion, waits until it rests, and raises CancelledError."""
         self._tell(Feedback.CANCELLING, "waiting until the arm rests and holds nothing")
         self._motion.stop(plan)

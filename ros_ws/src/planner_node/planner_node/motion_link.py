@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final
 
+from rclpy.publisher import Publisher
 from rclpy.time import Time
 from std_msgs.msg import Header
 from tamp_interfaces.msg import MotionStatus, SymbolicPlan
@@ -20,6 +21,12 @@ from .settings import Settings
 
 RUNNING: Final = (MotionStatus.OPTIMISING, MotionStatus.EXECUTING)
 ENDED: Final = (MotionStatus.SUCCEEDED, MotionStatus.CANCELLED, MotionStatus.FAILED)
+
+#: A plan that nobody subscribes to is given up after this long, which discovery never takes [s].
+DISCOVERY_SECONDS: Final = 5.0
+#: A motion node needs longer than this to restart; an idle report that follows a report on the
+#: plan sooner was on its way before [s].
+RESTART_SECONDS: Final = 0.5
 
 
 @dataclass
@@ -49,11 +56,10 @@ class MotionLink:
     Silence is measured in wall time, since a simulation that stops also stops its clock.
     """
 
-    def __init__(
-        self, settings: Settings, publish: Callable[[SymbolicPlan], None], now: Callable[[], int]
-    ) -> None:
+    def __init__(self, settings: Settings, plans: Publisher, now: Callable[[], int]) -> None:
+        """``plans`` is the publisher of plans; ``now`` is the ROS time [ns]."""
         self._settings = settings
-        self._publish = publish
+        self._plans = plans
         self._now = now
         self._changed = threading.Condition()
         self._execution: _Execution | None = None
@@ -83,7 +89,8 @@ class MotionLink:
             elif status.state == MotionStatus.IDLE or (status.state in RUNNING and not ours):
                 # One motion node does one thing: if it is idle or carries out another plan after
                 # it had taken up ours, then ours is lost.
-                execution.lost = execution.status is not None
+                if execution.heard and time.monotonic() > execution.heard + RESTART_SECONDS:
+                    execution.lost = True
             elif ours:
                 execution.heard = time.monotonic()
                 execution.status = status
@@ -114,11 +121,11 @@ class MotionLink:
         """Publishes a plan and follows it from now on."""
         with self._changed:
             self._execution = _Execution(plan.plan_id, time.monotonic())
-        self._publish(plan)
+        self._plans.publish(plan)
 
     def stop(self, plan: SymbolicPlan) -> None:
         """Asks the motion node to stop: the same plan without moves."""
-        self._publish(
+        self._plans.publish(
             SymbolicPlan(
                 header=Header(
                     stamp=Time(nanoseconds=self._now()).to_msg(),
@@ -182,6 +189,9 @@ class MotionLink:
         if execution.heard is None:
             limit, since = self._settings.motion_accept_timeout, execution.published
             sentence = "the motion node does not take up the plan"
+            if self._plans.get_subscription_count() == 0:
+                limit = min(limit, DISCOVERY_SECONDS)
+                sentence = "nobody subscribes to symbolic_plan"
         else:
             limit, since = self._settings.motion_silence_timeout, execution.heard
             sentence = "the motion node reports nothing any more"

@@ -72,9 +72,9 @@ class PlannerNode(Node):
         super().__init__("planner_node", **kwargs)
         self._settings = Settings()
         self._settings.update(declare_parameters(self, PARAMETERS, self._settings.update))
-        self._plans = self.create_publisher(SymbolicPlan, "symbolic_plan", LATCHED)
+        plans = self.create_publisher(SymbolicPlan, "symbolic_plan", LATCHED)
         self._scenes = SceneWatch(self._settings, self._now)
-        self._motion = MotionLink(self._settings, self._plans.publish, self._now)
+        self._motion = MotionLink(self._settings, plans, self._now)
         self._images = ImageClient(self, self._settings)
         self._claim_lock = threading.Lock()
         self._claimed_by = ""

@@ -26,8 +26,8 @@ class SceneWatch:
 
     def __init__(self, settings: Settings, now: Callable[[], int]) -> None:
         """``now`` is the ROS time [ns], 0 while simulated time has not arrived."""
+        self.now = now
         self._settings = settings
-        self._now = now
         self._arrived = threading.Condition()
         self._newest: SceneGraph | None = None
 
@@ -86,7 +86,7 @@ class SceneWatch:
                 self._arrived.wait(POLL_SECONDS)
 
     def _check_time(self, stamp: int, after: int) -> None:
-        now = self._now()
+        now = self.now()
         if now == 0:
             raise NoSceneGraphError(
                 "use_sim_time is set, but nothing arrives on clock; is sim_node running?"
@@ -104,4 +104,7 @@ class SceneWatch:
             )
         # After a restart of the simulation `after` can lie in the future: it means nothing then.
         if stamp <= after <= now:
-            raise NotConfidentError("the newest scene graph was taken before the last motion ended")
+            raise NotConfidentError(
+                "the newest scene graph shows the scene before the last motion or the request; are "
+                "the camera and perception_node still running?"
+            )

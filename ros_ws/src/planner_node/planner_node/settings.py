@@ -20,7 +20,7 @@ class Settings:
     graph_max_age: float = 5.0
     perceive_timeout: float = 15.0
     image_service_timeout: float = 10.0
-    motion_accept_timeout: float = 10.0
+    motion_accept_timeout: float = 30.0
     motion_silence_timeout: float = 30.0
     max_replans: int = 5
 
