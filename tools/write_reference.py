@@ -9,7 +9,6 @@ files are quoted as they are.
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import inspect
 import json
 import sys
@@ -146,18 +145,9 @@ def write_interfaces(modules: Mapping[str, ModuleType], folder: Path) -> str:
     return "\n".join(lines) + "\n"
 
 
-def find_nodes(names: Iterable[str]) -> dict[str, ModuleType]:
-    """The modules ``NAME.node`` by name, imported; a package without such a module is left out."""
-    return {
-        name: importlib.import_module(f"{name}.node")
-        for name in names
-        if importlib.util.find_spec(f"{name}.node")
-    }
-
-
 def pages() -> dict[str, str]:
     """The content of each page by its path relative to the repository."""
-    modules = find_nodes(NODES)
+    modules = {name: importlib.import_module(f"{name}.node") for name in NODES}
     return {
         "docs/parameters.md": write_parameters(modules),
         "docs/interfaces.md": write_interfaces(modules, INTERFACES_FOLDER),
