@@ -104,8 +104,7 @@ def read_crops(folder: Path) -> ObjectCrops:
         arrays = _read_shard(path, ("rgb", "labels"))
         for rgb, labels in zip(arrays["rgb"], arrays["labels"]):
             objects = object_images(rgb, labels)
-            largest: NDArray[np.intp] = objects.crop_sizes.max(axis=1)
-            fits = np.flatnonzero(largest <= CROP_SIZE)
+            fits = np.flatnonzero(objects.crop_sizes.max(axis=1) <= CROP_SIZE)
             pixels.append(objects.default_images[fits, :, -CROP_SIZE:, :CROP_SIZE])
             sizes.append(objects.crop_sizes[fits])
             corners.append(_corners(objects.coverage[fits]))
@@ -121,8 +120,8 @@ def read_crops(folder: Path) -> ObjectCrops:
 
 
 def _corners(coverage: NDArray[np.float32]) -> NDArray[np.intp]:
-    columns = coverage.any(1).argmax(1)
-    rows = coverage.any(2)[:, ::-1].argmax(1)
+    columns = np.any(coverage, axis=1).argmax(1)
+    rows = np.flip(np.any(coverage, axis=2), axis=1).argmax(1)
     return np.stack([columns, rows], axis=1)
 
 

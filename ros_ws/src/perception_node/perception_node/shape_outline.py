@@ -12,35 +12,34 @@ from scene_graph import BOX, CYLINDER, SPHERE
 
 from .clustering import cluster_on_line, within_cluster_cost
 
-#: Brightness steps that the faces of a box may make at most; what is left is shading.
+#: A box shows at most this many faces, each of one brightness.
 _FACES: Final = 3
-#: Share of the variance of brightness that shading must leave over to be seen.
-_SHADED: Final = 3.0
-#: The lowest rows of a ball are narrower than this part of its widest row.
-_BALL_BASE: Final = 0.72
+#: Spread of brightness left within the faces, relative to the brightness, from which it is shading.
+_SHADED: Final = 0.03
+#: A row is full that is at least this part of the widest row.
+_FULL: Final = 0.9
+#: Share of full rows from which a round block is a cylinder; a ball has 0.44 of them.
+_STRAIGHT: Final = 0.62
+#: Number of brightness values that are looked at.
+_SAMPLES: Final = 48
 
 
 def shape_from_outline(rgb: NDArray[np.uint8], mask: NDArray[np.bool_]) -> str:
     """``box``, ``cylinder`` or ``sphere``.
 
-    The faces of a box have one brightness each; the brightness of a round block changes steadily
-    from column to column. Of the round ones the ball is narrow at its lower end.
+    The faces of a box have one brightness each, that of a round block changes steadily. Of the
+    round ones the cylinder has straight sides.
 
     Args:
         rgb: shape (height, width, 3).
         mask: shape (height, width), not empty.
     """
-    rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))
-    crop = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-    part, light = mask[crop], rgb[crop].astype(np.float64).mean(-1)
-    profile = np.array([np.median(light[part[:, i], i]) for i in range(part.shape[1])])
-    count = min(_FACES, len(profile))
-    if len(profile) < 2 * _FACES:
+    light = np.sort(rgb[mask].max(axis=-1).astype(np.float64))
+    samples = light[np.linspace(0, len(light) - 1, min(_SAMPLES, len(light))).round().astype(int)]
+    faces = cluster_on_line(samples, min(_FACES, len(samples)))
+    spread = np.sqrt(within_cluster_cost(samples, faces) / len(samples))
+    if spread < _SHADED * max(float(np.median(light)), 32.0):
         return BOX
-    faces = cluster_on_line(profile, count)
-    shading = np.sqrt(within_cluster_cost(profile, faces) / len(profile))
-    if shading < _SHADED:
-        return BOX
-    widths = part.sum(1)
-    base = widths[-max(2, len(widths) // 8) :].mean() / widths.max()
-    return SPHERE if base < _BALL_BASE else CYLINDER
+    widths = mask.sum(axis=1)
+    widths = widths[widths > 0]
+    return CYLINDER if np.mean(widths >= _FULL * widths.max()) > _STRAIGHT else SPHERE

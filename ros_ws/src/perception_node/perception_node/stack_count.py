@@ -18,8 +18,9 @@ NOISE_ROWS: Final = 0.016
 def count_stacks(mask: NDArray[np.bool_]) -> int:
     """k = ½ max over rows of the intersections between a horizontal line and the mask's outline.
 
-    Every run of mask pixels in a row makes two intersections. Gaps and runs that are too narrow to
-    be a gap between stacks or a block are ignored, and so are counts seen on a few rows only.
+    Every run of mask pixels in a row makes two intersections. Before they are counted, holes and
+    gaps that are too narrow to be a gap between stacks are closed and specks that are too narrow to
+    be a block are removed; afterwards, counts that are seen on a few rows only are ignored.
 
     Args:
         mask: union of all objects' masks, shape (height, width).
@@ -28,12 +29,12 @@ def count_stacks(mask: NDArray[np.bool_]) -> int:
         Number of stacks; 0 for an empty mask.
     """
     height, width = mask.shape
-    narrow = max(1, round(NOISE_WIDTH * width))
+    narrow = max(1, round(NOISE_WIDTH * width)) + 1
     rows = max(1, round(NOISE_ROWS * height))
-    line = np.ones((1, narrow + 1), np.uint8)
-    padded = np.pad(mask.astype(np.uint8), ((0, 0), (narrow + 1, narrow + 1)))
-    closed = cv2.morphologyEx(padded, cv2.MORPH_CLOSE, line)
-    opened = cv2.morphologyEx(closed, cv2.MORPH_OPEN, line)
+    square = np.ones((narrow, narrow), np.uint8)
+    padded = np.pad(mask.astype(np.uint8), narrow)
+    closed = cv2.morphologyEx(padded, cv2.MORPH_CLOSE, square)
+    opened = cv2.morphologyEx(closed, cv2.MORPH_OPEN, square)
     counts = np.count_nonzero(np.diff(opened.astype(np.int8), axis=1) > 0, axis=1)
     for count in range(counts.max(initial=0), 0, -1):
         if np.count_nonzero(counts >= count) >= rows:
