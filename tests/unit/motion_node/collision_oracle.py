@@ -14,6 +14,7 @@ import numpy as np
 import pybullet
 import pybullet_data
 from numpy.typing import NDArray
+
 from scene_graph import Move, SceneGraph, apply_move
 
 Array = NDArray[np.float64]

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+
 from scene_graph import (
     BOX,
     COLORS,
@@ -19,7 +20,7 @@ from scene_graph import (
     up_relations,
 )
 
-BASES = (-0.15, 0.0, 0.15)
+BASES = ((0.5, -0.15), (0.5, 0.0), (0.5, 0.15))
 EDGE = 0.045
 
 
@@ -30,7 +31,7 @@ def scene(
     yaw: float = 0.1,
     offset: float = 0.004,
     edge: float = EDGE,
-    bases: Sequence[tuple[float, float]] = tuple((0.5, y) for y in BASES),
+    bases: Sequence[tuple[float, float]] = BASES,
 ) -> SceneGraph:
     """Towers of boxes of the given heights; with ``rng`` a little turned and off their places."""
     names = iter([object_name(color, BOX) for color in COLORS])

@@ -8,11 +8,13 @@ product with multipliers, all evaluated over many steps at once with ``Function.
 * ``switch(q, reference)``: deviation of the tool centre point from a vertical line and of the
   fingers from a direction, and the point's height.
 
-Clearance: a body's box and a stack's upright box are apart if they are apart along one of the world
-axes, or along the body's own axis across the arm (the separating-axis test, restricted to four
-axes, hence on the safe side). The largest of the four gaps d_i is smoothed from below by
+Clearance: the hand, with what hangs from it, is a box. It is apart from the upright box of a stack
+if the two are apart along one of the world's axes or along the hand's own axis across the fingers
+(the separating-axis test, restricted to the axes that matter). The links behind the hand are
+spheres, apart from a stack if they are above it or beside the upright cylinder around it. Both are
+on the safe side. The largest of the k gaps d_i is smoothed from below by
 
-    (1/s) log(sum_i exp(s d_i)) - log(4)/s  <=  max_i d_i,
+    (1/s) log(sum_i exp(s d_i)) - log(k)/s  <=  max_i d_i,
 
 whose gradient never vanishes, so a solver finds the way out of any overlap.
 """
@@ -37,7 +39,7 @@ Array = NDArray[np.float64]
 
 #: Sharpness s of the smooth maximum [1/m].
 SHARPNESS: Final = 150.0
-#: What the safe side of the smooth maximum costs where one gap dominates, log(4)/s [m].
+#: What the safe side costs at most, where one of four gaps dominates: log(4)/s [m].
 SMOOTHING: Final = float(np.log(4.0)) / SHARPNESS
 LEAN_ROWS: Final = 2
 SWITCH_ROWS: Final = 4
@@ -77,52 +79,57 @@ def _smooth_abs(value: ca.SX) -> ca.SX:
     return ca.sqrt(value * value + 1e-6)
 
 
-@dataclass(frozen=True)
-class _PosedBox:
-    """A body's box in the world.
+def _smooth_max(values: list[ca.SX]) -> ca.SX:
+    """From below; see the module."""
+    return (ca.logsumexp(SHARPNESS * ca.vertcat(*values)) - np.log(len(values))) / SHARPNESS
 
-    Attributes:
-        center: in the world, 3 values [m].
-        extent: half extents along the world axes, 3 values [m].
-        across: unit vector of the box's axis across the arm, 3 values.
-        half_across: half extent along it [m].
+
+class _Hand:
+    """The box of the hand and what hangs from it, in the world.
+
+    Args:
+        rotation, position: pose of the hand's frame.
+        top, bottom: z of the box's ends in that frame [m].
+        half: half extents along the frame's x and y axes [m].
     """
 
-    center: list[ca.SX]
-    extent: list[ca.SX]
-    across: list[ca.SX]
-    half_across: ca.SX
+    def __init__(
+        self, rotation: ca.SX, position: ca.SX, top: float, bottom: ca.SX, half: list[ca.SX]
+    ) -> None:
+        self._rotation = rotation
+        self._half = ca.vertcat(*half, (bottom - top) / 2)
+        self._center = position + rotation[:, 2] * (top + bottom) / 2
 
-    @staticmethod
-    def of(
-        rotation: ca.SX, position: ca.SX, center: ca.SX, half: list[ca.SX], across: int
-    ) -> _PosedBox:
-        moved = position + rotation @ center
-        # Support function of a box along a world axis: sum_j |R_ij| half_j.
-        extent = [
-            ca.sum1(ca.vertcat(*[_smooth_abs(rotation[i, j]) * half[j] for j in range(3)]))
-            for i in range(3)
-        ]
-        axis = [rotation[i, across] for i in range(3)]
-        return _PosedBox([moved[i] for i in range(3)], extent, axis, half[across])
+    def _extent(self, axis: int) -> ca.SX:
+        """Half extent along a world axis [m]: the support function sum_j |R_ij| half_j."""
+        return ca.dot(_smooth_abs(self._rotation[axis, :].T), self._half)
 
-    def gap_to_column(self, column: ca.SX, floor: ca.SX) -> ca.SX:
-        """Smooth gap [m] to a column (center x, y, half x, y, top), on the safe side."""
-        middle, half = (column[4] + floor) / 2, (column[4] - floor) / 2
-        delta = [self.center[0] - column[0], self.center[1] - column[1], self.center[2] - middle]
-        halves = [column[2], column[3], half]
-        along = sum(axis * distance for axis, distance in zip(self.across, delta))
-        reach = sum(_smooth_abs(axis) * value for axis, value in zip(self.across, halves))
-        gaps = ca.vertcat(
-            _smooth_abs(delta[0]) - column[2] - self.extent[0],
-            _smooth_abs(delta[1]) - column[3] - self.extent[1],
-            self.center[2] - column[4] - self.extent[2],
-            _smooth_abs(along) - reach - self.half_across,
+    def gap(self, column: ca.SX, floor: ca.SX) -> ca.SX:
+        """To a column (center x, y, half x, y, top) [m]."""
+        middle = ca.vertcat(column[0], column[1], (column[4] + floor) / 2)
+        halves = ca.vertcat(column[2], column[3], (column[4] - floor) / 2)
+        delta = self._center - middle
+        across = self._rotation[:, 0]
+        reach = ca.dot(_smooth_abs(across), halves) + self._half[0]
+        return _smooth_max(
+            [
+                delta[2] - halves[2] - self._extent(2),
+                _smooth_abs(ca.dot(across, delta)) - reach,
+                _smooth_abs(delta[0]) - halves[0] - self._extent(0),
+                _smooth_abs(delta[1]) - halves[1] - self._extent(1),
+            ]
         )
-        return ca.logsumexp(SHARPNESS * gaps) / SHARPNESS - SMOOTHING
 
-    def gap_to_floor(self, floor: ca.SX) -> ca.SX:
-        return self.center[2] - self.extent[2] - floor
+    def height(self) -> ca.SX:
+        """Of its lowest point [m]."""
+        return self._center[2] - self._extent(2)
+
+
+def _sphere_gap(center: ca.SX, radius: float, column: ca.SX) -> ca.SX:
+    """Of a sphere to a column (center x, y, half x, y, top) [m]."""
+    delta = center[:2] - column[:2]
+    beside = ca.sqrt(ca.dot(delta, delta) + 1e-6) - ca.sqrt(ca.dot(column[2:4], column[2:4]) + 1e-9)
+    return _smooth_max([center[2] - column[4] - radius, beside - radius])
 
 
 class Features:
@@ -142,13 +149,15 @@ class Features:
 
     @property
     def mode_size(self) -> int:
-        """Length of the parameters of ``path``: columns (5 each), tool (3), floor, margin."""
+        """Length of the parameters of ``path``: columns (5 each), hand (3), floor, margin."""
         return 5 * self.stacks + 5
 
     def mode(self, columns: tuple[Column, ...], tool: Tool, floor: float, margin: float) -> Array:
         """Parameters of ``path``, shape (mode_size,): the mode s_k of 5.1 [m]."""
         boxes = [(*column.center, *column.half, column.top) for column in columns]
-        return np.array([*np.ravel(boxes), tool.half_x, tool.half_y, tool.bottom, floor, margin])
+        half_x = max(tool.half_x, self.robot.hand_half[0])
+        half_y = max(tool.half_y, self.robot.hand_half[1])
+        return np.array([*np.ravel(boxes), half_x, half_y, tool.bottom, floor, margin])
 
     @cached_property
     def path(self) -> Feature:
@@ -157,31 +166,27 @@ class Features:
         parameters = ca.SX.sym("mode", self.mode_size)
         columns = ca.reshape(parameters[: 5 * self.stacks], 5, self.stacks)
         half_x, half_y, bottom, floor, margin = ca.vertsplit(parameters[5 * self.stacks :])
-        rotation, position = self._poses[robot.hand_link]
-        tool_center = ca.vertcat(0, 0, (robot.palm + bottom) / 2)
-        tool = [half_x, half_y, (bottom - robot.palm) / 2]
-        boxes = [_PosedBox.of(rotation, position, tool_center, tool, 0)]
+        hand = _Hand(*self._poses[robot.hand_link], robot.hand_top, bottom, [half_x, half_y])
+        spheres = []
         for body in robot.bodies:
-            pose = self._poses[body.link]
-            half = [ca.SX(value) for value in body.half]
-            boxes.append(_PosedBox.of(*pose, ca.SX(ca.DM(body.center)), half, body.across))
+            rotation, position = self._poses[body.link]
+            spheres.append((position + rotation @ ca.DM(body.center), body.radius))
+        rotation, _ = self._poses[robot.hand_link]
         rows = [rotation[0, 2], rotation[1, 2]]
-        rows += [
-            box.gap_to_column(columns[:, index], floor) - margin
-            for index in range(self.stacks)
-            for box in boxes
-        ]
-        rows += [box.gap_to_floor(floor) - margin for box in boxes[:3]]
+        for column in ca.horzsplit(columns, 1):
+            rows.append(hand.gap(column, floor) - margin)
+            rows += [_sphere_gap(*sphere, column) - margin for sphere in spheres]
+        rows.append(hand.height() - floor - margin)
         return _feature("path", self._q, parameters, ca.vertcat(*rows))
 
     def path_names(self, tool: Tool) -> list[str]:
         """The rows of ``path`` in words."""
-        below = tool.held or "fingers"
-        bodies = [below, *(body.name for body in self.robot.bodies)]
+        hand = f"hand with {tool.held}" if tool.held else "hand"
+        bodies = [hand, *(body.name for body in self.robot.bodies)]
         names = ["tilt of the hand"] * LEAN_ROWS
         for index in range(self.stacks):
             names += [f"clearance of {body} to {base_name(index)}" for body in bodies]
-        return names + [f"clearance of {body} to the table" for body in bodies[:3]]
+        return [*names, f"clearance of {hand} to the table"]
 
     @cached_property
     def switch(self) -> Feature:
@@ -204,7 +209,7 @@ class Features:
 
     @property
     def tool_floor_row(self) -> int:
-        """Row of ``path`` that holds the clearance of the tool to the table."""
+        """Row of ``path`` that holds the clearance of the hand to the table."""
         return LEAN_ROWS + self.stacks * (1 + len(self.robot.bodies))
 
     def switch_names(self, switch: Switch) -> list[str]:
@@ -221,7 +226,10 @@ class Features:
 
     @cached_property
     def pose(self) -> ca.Function:
-        """q -> residual (7,) and its Jacobian (7, n), for :mod:`inverse_kinematics`: tool centre point, lean of the hand along x and y, and the fingers' direction along x and y."""
+        """q -> residual (7,) and its Jacobian (7, n), for :mod:`inverse_kinematics`.
+
+        Rows: tool centre point, lean of the hand along x and y, fingers' direction along x and y.
+        """
         rotation, position = self._poses[self.robot.hand_link]
         point = position + rotation[:, 2] * self.robot.tcp_offset
         residual = ca.vertcat(point, rotation[0, 2], rotation[1, 2], rotation[0, 1], rotation[1, 1])

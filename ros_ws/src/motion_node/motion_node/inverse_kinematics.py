@@ -58,3 +58,14 @@ class InverseKinematics:
         """Tool centre points at configurations (k, n) less positions, shape (k, 3) [m]."""
         values, _ = self._function.map(len(q))(q.T)
         return np.asarray(np.array(values).T[:, :3] - positions_world)
+
+    def self_motion(self, q: Array) -> Array:
+        """Unit directions (k, n) in which configurations (k, n) move without moving the hand.
+
+        An arm with seven joints has one such direction, in which its elbow swings about the line
+        from shoulder to wrist; the first joint's share is made positive.
+        """
+        _, jacobians = self._function.map(len(q))(q.T)
+        jacobian = np.array(jacobians).reshape(7, len(q), -1).transpose(1, 0, 2)
+        direction = np.linalg.svd(jacobian)[2][:, -1]
+        return np.asarray(direction * np.where(direction[:, :1] < 0, -1.0, 1.0))

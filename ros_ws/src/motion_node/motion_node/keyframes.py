@@ -25,8 +25,9 @@ Array = NDArray[np.float64]
 
 #: Weight of the distance to the rest posture against the distance between keyframes.
 POSTURE_WEIGHT = 0.02
-#: Turns of the first joint away from the target that the third takes back: elbow to the side [rad].
-ELBOW_SWINGS = (0.0, 0.3, -0.3, 0.6, -0.6, 1.0, -1.0)
+#: Steps in which the elbow is swung to either side in search of room, and their length [rad].
+ELBOW_STEPS = 6
+ELBOW_STEP = 0.35
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,16 @@ class Clearances:
 
     margin: float
     floor: float
+
+
+@dataclass(frozen=True)
+class _Guess:
+    """A configuration (n,), by how much it misses pose and clearances, rounded to mm, and how far
+    its elbow is swung from upright."""
+
+    q: Array
+    score: float
+    swing: int = 0
 
 
 def lowered(
@@ -94,31 +105,37 @@ class Keyframes:
             )
         return self._problems[count]
 
-    def guess(self, phases: Sequence[Phase], bounds: Sequence[Bounds]) -> Array:
-        """Configurations at the switches, shape (k, n): near the rest posture, turned towards them.
+    def guesses(self, phases: Sequence[Phase], bounds: Sequence[Bounds]) -> list[list[_Guess]]:
+        """Configurations near the rest posture turned towards each switch, the best one first.
 
         The arm has one joint more than a pose asks for. Beside a tall stack the forearm has to
-        lean away from it, which is another valley than the upright one; so a few elbow positions
-        are tried, and the first of those that violate the clearances least is taken.
+        lean away from it, which is another valley than the upright one; so the elbow is swung to
+        either side in steps, unless upright configurations serve for all switches.
         """
         switches = [phase.switch for phase in phases if phase.switch]
         positions = np.array([switch.position_world for switch in switches])
         yaws = np.array([switch.yaw for switch in switches])
-        azimuth = np.arctan2(positions[:, 1], positions[:, 0])
-        best = np.zeros((len(switches), self.features.dimension))
-        least = np.full(len(switches), np.inf)
+        near, directions = self._turned(np.arctan2(positions[:, 1], positions[:, 0]), yaws)
+        upright = self.inverse.solve(positions, directions, near)
         path = self.features.path.value.map(len(switches))
-        for swing in ELBOW_SWINGS:
-            near, directions = self._turned(azimuth + swing, yaws)
-            near[:, 2] -= 0.8 * swing
-            q = self.inverse.solve(positions, directions, near)
-            gaps = np.array(path(q.T, bounds[0].parameters.T)).T
+
+        def score(configurations: Array) -> Array:
+            gaps = np.array(path(configurations.T, bounds[0].parameters.T)).T
             short = np.maximum(bounds[0].lower - gaps, 0.0)[:, LEAN_ROWS:].sum(axis=1)
-            reached = np.abs(self.inverse.residual(q, positions)).max(axis=1)
-            score = np.round(short + 10 * reached, 3)
-            better = score < least
-            best[better], least[better] = q[better], score[better]
-        return best
+            missed = np.abs(self.inverse.residual(configurations, positions)).max(axis=1)
+            return np.round(short + 10 * missed, 3)
+
+        found = [[_Guess(q, float(s))] for q, s in zip(upright, score(upright))]
+        if all(own[0].score == 0.0 for own in found):
+            return found
+        for side in (1.0, -1.0):
+            q = upright
+            for step in range(ELBOW_STEPS):
+                swung = q + side * ELBOW_STEP * self.inverse.self_motion(q)
+                q = self.inverse.solve(positions, directions, swung, iterations=8)
+                for own, configuration, value in zip(found, q, score(q)):
+                    own.append(_Guess(configuration, float(value), step + 1))
+        return [sorted(own, key=lambda guess: (guess.score, guess.swing)) for own in found]
 
     def _turned(self, azimuth: Array, yaws: Array) -> tuple[Array, Array]:
         """The rest posture turned to azimuths (k,), and the fingers' directions nearest to yaws.
@@ -171,45 +188,53 @@ class Keyframes:
         if not phases:
             return np.zeros((0, self.features.dimension))
         bounds = self.bounds(phases, clear)
-        x = np.vstack([start, self.guess(phases, bounds), self.home])
+        guesses = self.guesses(phases, bounds)
+        poses = [
+            self._solve_pose(phase, bounds, index, own)
+            for index, (phase, own) in enumerate(zip(phases, guesses))
+        ]
+        x = np.vstack([start, *poses, self.home])
         solution = self.problem(len(phases)).solve(x, bounds, self.lower, self.upper)
         if solution.feasible:
             return solution.x[1:-1]
-        for phase in phases:
-            self.solve_pose(phase, clear)
         raise self._error(KEYFRAMES, solution, phases)
 
-    def solve_pose(self, phase: Phase, clear: Clearances) -> Array:
+    def _solve_pose(
+        self, phase: Phase, bounds: Sequence[Bounds], index: int, guesses: Sequence[_Guess]
+    ) -> Array:
         """P1: a configuration at the end of one phase, near the rest posture, shape (n,).
 
         Raises:
             InfeasibleError: with bound ``pose``.
         """
-        bounds = self.bounds([phase], clear)
-        x = np.vstack([self.home, self.guess([phase], bounds), self.home])
-        solution = self.problem(1).solve(x, bounds, self.lower, self.upper)
-        if not solution.feasible:
-            raise self._error(POSE, solution, [phase])
-        return np.asarray(solution.x[1])
+        if guesses[0].score == 0.0:
+            return guesses[0].q
+        own = [
+            Bounds(*(rows[[index]] for rows in (item.parameters, item.lower, item.upper)))
+            for item in bounds
+        ]
+        failed = []
+        for guess in guesses:
+            x = np.vstack([self.home, guess.q, self.home])
+            solution = self.problem(1).solve(x, own, self.lower, self.upper)
+            if solution.feasible:
+                return np.asarray(solution.x[1])
+            failed.append(solution)
+        raise self._error(POSE, min(failed, key=lambda item: item.violation), [phase])
 
     def _error(self, bound: str, solution: Solution, phases: Sequence[Phase]) -> InfeasibleError:
-        worst = [
-            (float(v.max()), *np.unravel_index(int(v.argmax()), v.shape), which)
-            for which, v in enumerate(solution.violations)
-        ]
-        violation, step, row, which = max(worst)
-        phase = phases[int(step)]
+        which = int(np.argmax([rows.max() for rows in solution.violations]))
+        rows = solution.violations[which]
+        step, row = (int(i) for i in np.unravel_index(int(rows.argmax()), rows.shape))
+        phase = phases[step]
         assert phase.switch is not None
-        names = (
-            self.features.path_names(phase.tool)
-            if which == 0
-            else self.features.switch_names(phase.switch)
-        )
+        path_names = self.features.path_names(phase.tool)
+        names = path_names if which == 0 else self.features.switch_names(phase.switch)
         return InfeasibleError(
             bound,
-            names[int(row)],
+            names[row],
             object_name=phase.object_name,
-            violation=violation,
+            violation=float(rows.max()),
             move=phase.move,
             phase=phase.kind,
         )

@@ -92,8 +92,9 @@ class MotionNode(Node):
         self.create_subscription(
             String, "robot_description", self._on_description, LATCHED, callback_group=plans
         )
+        with_info: Any = self._on_plan  # rclpy passes the message's times to a second argument
         self.create_subscription(
-            SymbolicPlan, "symbolic_plan", self._on_plan, LATCHED, callback_group=plans
+            SymbolicPlan, "symbolic_plan", with_info, LATCHED, callback_group=plans
         )
         # The beat is in wall time: a planner shall hear of a node that waits for the clock, too.
         self.create_timer(

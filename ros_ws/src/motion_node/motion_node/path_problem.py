@@ -40,7 +40,7 @@ class PathSettings:
         max_lean: how far the hand may lean from vertical in between [rad].
     """
 
-    steps: int = 16
+    steps: int = 14
     vertical: int = 4
     lift: float = 0.05
     margin: float = 0.015
@@ -87,8 +87,10 @@ class PathProblem:
         fixed = [k * intervals for k in range(phases + 1)]
         accelerations = np.zeros((phases * (intervals + 1), steps))
         for k in range(phases):
-            # At rest before and after: x_{-1} = x_0 and x_{T+1} = x_T, the prefix of 3.4.
-            index = np.clip(np.arange(-1, intervals + 2), 0, intervals) + k * intervals
+            # At rest at both ends, by central differences: x_{-1} = x_1 and x_{T+1} = x_{T-1},
+            # which stand for the prefix of 3.4.
+            index = intervals - np.abs(intervals - np.abs(np.arange(-1, intervals + 2)))
+            index += k * intervals
             for row in range(intervals + 1):
                 for offset, factor in enumerate((1.0, -2.0, 1.0)):
                     accelerations[k * (intervals + 1) + row, index[row + offset]] += factor
@@ -141,11 +143,8 @@ class PathProblem:
         if path.max() >= switch.max():
             constraint = self.features.path_names(phase.tool)[int(path.max(axis=0).argmax())]
         else:
-            constraint = ["vertical approach"] * 2 + [
-                "direction of the fingers",
-                "height of the lift",
-            ]
-            constraint = constraint[int(switch.max(axis=0).argmax())]
+            names = ("vertical line", "vertical line", "direction of the fingers", "lift")
+            constraint = names[int(switch.max(axis=0).argmax())]
         return InfeasibleError(
             PATH,
             constraint,
@@ -282,9 +281,9 @@ class PhaseBounds:
             if end is None:
                 continue
             _, yaw = self.features.hand_pose(q)
-            x, y, _ = end.reference * (1 - inwards)
-            z = max(across, end.height + end.lift)
-            knots.append(inverse.solve(np.array([x, y, z]), np.array([yaw]), q)[0])
+            above = end.reference * (1 - inwards)
+            above[2] = max(across, end.height + end.lift)
+            knots.append(inverse.solve(above, np.array([yaw]), q)[0])
             shares.append(at)
         knots.append(self.goal_q)
         shares.append(1.0)

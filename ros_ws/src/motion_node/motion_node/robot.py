@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the motion problem needs to know of an arm beyond its URDF: names, hull boxes, rest pose.
+"""What the motion problem needs to know of an arm beyond its URDF: names, hulls, rest pose.
 
-The URDF names meshes that may not be on this machine, so each link that can come near a block is
-covered by a box, measured from the convex hulls of Franka's collision meshes. The unit tests hold
-the boxes against the meshes.
+The URDF names meshes that may not be on this machine, so the hand is covered by a box and the links
+behind it by spheres, measured from the convex hulls of Franka's meshes. The unit tests hold them
+against the meshes.
 """
 
 from __future__ import annotations
@@ -13,22 +13,20 @@ from typing import Final
 
 
 @dataclass(frozen=True)
-class BodyBox:
-    """A box that covers (part of) a link.
+class BodySphere:
+    """A sphere that covers part of a link.
 
     Attributes:
         name: as a person calls it; it appears in the names of violated constraints.
-        link: the link whose frame the box is fixed to.
-        center, half: centre and half extents in the link's frame [m].
-        across: which of the box's axes points across the arm, so that it parts the arm from a
-            stack beside it, whichever way the arm points.
+        link: the link whose frame the sphere is fixed to.
+        center: in the link's frame [m].
+        radius: [m].
     """
 
     name: str
     link: str
     center: tuple[float, float, float]
-    half: tuple[float, float, float]
-    across: int
+    radius: float
 
 
 @dataclass(frozen=True)
@@ -45,7 +43,9 @@ class RobotGeometry:
         finger_depth: extent of a finger outwards from its gripping face [m].
         finger_travel: distance of a gripping face from the middle when fully open [m].
         palm: z of the hand's lower face in the hand frame [m].
-        bodies: boxes of the hand and the links behind it; the fingers come on top.
+        hand_half: half extents of the hand with the flange along its x and y axes [m].
+        hand_top: z of the flange's upper end in the hand frame [m].
+        bodies: spheres that cover those parts of the links behind the hand that come near stacks.
         home: configuration of the arm at rest, in which it hides nothing from the camera [rad].
         acceleration: joint acceleration limits [rad/s²]; URDFs have none.
     """
@@ -60,7 +60,9 @@ class RobotGeometry:
     finger_depth: float
     finger_travel: float
     palm: float
-    bodies: tuple[BodyBox, ...]
+    hand_half: tuple[float, float]
+    hand_top: float
+    bodies: tuple[BodySphere, ...]
     home: tuple[float, ...]
     acceleration: tuple[float, ...]
 
@@ -78,11 +80,14 @@ PANDA: Final = RobotGeometry(
     finger_depth=0.0264,
     finger_travel=0.04,
     palm=0.066,
+    hand_half=(0.044, 0.1155),
+    hand_top=-0.055,
     bodies=(
-        BodyBox("hand", "panda_hand", (0.0, 0.0055, 0.0055), (0.044, 0.1100, 0.0605), 0),
-        BodyBox("wrist", "panda_link6", (0.0422, 0.0153, 0.0062), (0.0902, 0.0666, 0.0504), 2),
-        BodyBox("forearm", "panda_link5", (0.0, 0.055, -0.040), (0.056, 0.076, 0.093), 1),
-        BodyBox("forearm", "panda_link5", (0.0, 0.030, -0.199), (0.056, 0.086, 0.066), 1),
+        BodySphere("wrist", "panda_link6", (0.075, -0.028, 0.006), 0.064),
+        BodySphere("wrist", "panda_link6", (0.076, 0.030, 0.000), 0.064),
+        BodySphere("wrist", "panda_link6", (0.011, 0.006, 0.007), 0.064),
+        BodySphere("forearm", "panda_link5", (0.002, 0.062, -0.016), 0.079),
+        BodySphere("forearm", "panda_link5", (0.000, 0.040, -0.096), 0.079),
     ),
     home=(0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785),
     acceleration=(15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0),

@@ -35,8 +35,8 @@ class TimingSettings:
         point_seconds: longest time between points of the trajectory [s].
     """
 
-    velocity_scale: float = 0.6
-    acceleration_scale: float = 0.5
+    velocity_scale: float = 0.9
+    acceleration_scale: float = 0.7
     close_seconds: float = 0.5
     open_seconds: float = 0.4
     finger_speed: float = 0.1

@@ -57,7 +57,7 @@ class Trajectory:
         return float(self.times[-1])
 
     def sample(self, times: Array | float) -> tuple[Array, Array]:
-        """Positions and velocities, shape (..., joints), at times [s] clipped to the trajectory's."""
+        """Positions and velocities at times [s], clipped to its ends; shapes (..., joints)."""
         at = np.clip(np.asarray(times, dtype=float), 0.0, self.duration)
         index = np.clip(np.searchsorted(self.times, at, side="right") - 1, 0, len(self.times) - 2)
         span = (self.times[index + 1] - self.times[index])[..., None]
