@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -127,7 +128,8 @@ def _front_plane(points: Array, normals: Array) -> tuple[float, float, float]:
     turns = np.round((angles - quarter) / (np.pi / 2)).astype(int) % 4
     turn = int(np.bincount(turns, minlength=4).argmax())
     yaw = quarter + turn * np.pi / 2
-    front = float(np.median((points[upright][turns == turn] @ block_frame(yaw))[:, 0]))
+    points = points[upright][turns == turn]
+    front = float(np.median(points @ block_frame(yaw)[:, 0]))
     tilt, tolerance = 0.0, 2.0 * SURFACE_TOLERANCE
     for _ in range(3):
         x, y, z = (points @ block_frame(yaw)).T
@@ -160,8 +162,13 @@ def _measure_box(
     in_frame = points_world @ block_frame(yaw)
     with np.errstate(invalid="ignore"):
         behind = mask & (in_frame[..., 0] < front - SURFACE_TOLERANCE)
+    unknown = mask & np.isnan(in_frame[..., 0])
+    if unknown.any():  # a pixel without depth is of the face that most of its neighbours are of
+        near_behind = cv2.boxFilter(behind.astype(np.float32), -1, (3, 3))
+        near_front = cv2.boxFilter((mask & ~behind & ~unknown).astype(np.float32), -1, (3, 3))
+        behind |= unknown & (near_behind > near_front)
     left, right, bottom, top = _edges(mask & ~behind, camera, yaw, front)
-    rest = in_frame[behind]
+    rest = in_frame[behind & ~unknown]
     inside = (rest[:, 1] > left.high + SURFACE_TOLERANCE) & (
         rest[:, 1] < right.low - SURFACE_TOLERANCE
     )

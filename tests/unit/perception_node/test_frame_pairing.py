@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Images of one time become one frame; the newest wins."""
+
+from perception_node.frame_pairing import FramePairing
+
+STREAMS = ("image", "depth", "segmentation")
+
+
+def feed(pairing: FramePairing, stamp: int, *streams: str) -> list[int]:
+    """Stamps of the frames that came out."""
+    sets = [pairing.add(stream, stamp, f"{stream}{stamp}", 0.0) for stream in streams]
+    return [item.stamp for item in sets if item is not None]
+
+
+def test_a_frame_is_complete_when_its_last_image_arrives() -> None:
+    pairing = FramePairing(STREAMS)
+    assert feed(pairing, 1, "depth", "image") == []
+    frame = pairing.add("segmentation", 1, "segmentation1", 9.0)
+    assert frame is not None
+    assert frame.messages == {name: f"{name}1" for name in STREAMS}
+    assert frame.arrival == 0.0
+
+
+def test_images_of_different_times_are_never_mixed() -> None:
+    pairing = FramePairing(STREAMS)
+    assert feed(pairing, 1, "image") + feed(pairing, 2, "depth", "segmentation") == []
+    assert feed(pairing, 2, "image") == [2]
+
+
+def test_an_older_frame_that_is_completed_late_is_dropped() -> None:
+    pairing = FramePairing(STREAMS)
+    feed(pairing, 1, "image", "depth")
+    assert feed(pairing, 2, *STREAMS) == [2]
+    assert feed(pairing, 1, "segmentation") == []
+    assert feed(pairing, 2, *STREAMS) == []
+
+
+def test_a_stream_that_is_missing_is_named() -> None:
+    pairing = FramePairing(STREAMS)
+    for stamp in range(100):
+        feed(pairing, stamp, "image", "depth")
+    assert pairing.missing() == ("segmentation",)
+
+
+def test_a_camera_whose_clock_starts_anew_is_followed() -> None:
+    pairing = FramePairing(STREAMS)
+    assert feed(pairing, 10**12, *STREAMS) == [10**12]
+    assert feed(pairing, 5, *STREAMS) == [5]

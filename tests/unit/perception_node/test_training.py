@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Training is self-supervised, learns, and goes on where it was stopped."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from perception_node.dataset import place_crops, read_crops, read_scenes
+from perception_node.errors import DatasetError, WeightsError
+from perception_node.masks import object_images
+from perception_node.train_visual import main
+from perception_node.training import Trainer, TrainingConfig
+from perception_node.weights import load_weights
+from sim_node.render_dataset import render_shard
+from sim_node.world import World
+
+TINY = TrainingConfig(steps=6, batch_scenes=2, checkpoint_every=3)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Three scenes, rendered by the simulator."""
+    path = tmp_path_factory.mktemp("scenes")
+    layouts = [
+        (("red_box", "blue_box"), ("green_box",), ()),
+        ((), ("red_box", "green_box", "blue_box"), ()),
+        (("green_box",), ("blue_box",), ("red_box",)),
+    ]
+    with World() as world:
+        render_shard(world, enumerate(layouts), path / "shard_0000.npz")
+    return path
+
+
+def losses(trainer: Trainer, steps: int) -> list[float]:
+    found: list[float] = []
+
+    def note(step: int, loss: float) -> bool:
+        found.append(loss)
+        return step < steps
+
+    trainer.run(note)
+    return found
+
+
+def test_the_simulators_data_sets_are_read(folder: Path) -> None:
+    scenes = list(read_scenes(folder))
+    assert scenes[1].layout == ((), ("red_box", "green_box", "blue_box"), ())
+    assert set(scenes[0].label_names.values()) == {"red_box", "blue_box", "green_box"}
+    assert scenes[0].depth is not None and scenes[0].depth.shape == (256, 256)
+
+
+def test_crops_put_back_in_their_places_are_the_objects_images(folder: Path) -> None:
+    crops = read_crops(folder)
+    assert crops.scenes.tolist() == [0, 3, 6, 9]
+    placed = place_crops(crops.pixels.float() / 255.0, crops.corners)
+    scenes = list(read_scenes(folder))
+    images = np.concatenate([object_images(s.rgb, s.labels).images for s in scenes])
+    assert placed.numpy() == pytest.approx(images, abs=0.5 / 255 + 1e-6)
+
+
+def test_training_needs_no_ground_truth(folder: Path, tmp_path: Path) -> None:
+    with np.load(folder / "shard_0000.npz") as shard:
+        np.savez(tmp_path / "shard_0000.npz", rgb=shard["rgb"], labels=shard["labels"])
+    ours, theirs = read_crops(tmp_path), read_crops(folder)
+    assert torch.equal(ours.pixels, theirs.pixels) and torch.equal(ours.corners, theirs.corners)
+    assert len(losses(Trainer(ours, TINY), 2)) == 2
+
+
+def test_the_loss_falls(folder: Path) -> None:
+    config = TrainingConfig(steps=60, batch_scenes=2, damage_share=0.0, learning_rate=1e-2)
+    found = losses(Trainer(read_crops(folder), config), 60)
+    assert np.mean(found[-5:]) < 0.5 * np.mean(found[:5])
+
+
+def test_a_resumed_run_is_the_same_as_one_that_was_not_stopped(
+    folder: Path, tmp_path: Path
+) -> None:
+    crops, checkpoint = read_crops(folder), tmp_path / "checkpoint.pt"
+    whole = Trainer(crops, TINY)
+    expected = losses(whole, 6)
+    first = Trainer(crops, TINY)
+    found = losses(first, 3)
+    first.save(checkpoint)
+    second = Trainer(crops, TINY)
+    second.resume(checkpoint)
+    assert found + losses(second, 6) == pytest.approx(expected, rel=1e-5)
+    for ours, theirs in zip(second.module.parameters(), whole.module.parameters()):
+        assert torch.allclose(ours, theirs, atol=1e-6)
+
+
+def test_a_checkpoint_of_another_run_is_refused(folder: Path, tmp_path: Path) -> None:
+    crops, checkpoint = read_crops(folder), tmp_path / "checkpoint.pt"
+    Trainer(crops, TINY).save(checkpoint)
+    other = Trainer(crops, TrainingConfig(steps=7))
+    with pytest.raises(WeightsError, match="other hyper-parameters"):
+        other.resume(checkpoint)
+    checkpoint.write_bytes(b"not a checkpoint")
+    with pytest.raises(WeightsError, match="damaged"):
+        other.resume(checkpoint)
+
+
+def test_the_command_trains_and_goes_on(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["--data", str(folder), "--run", str(tmp_path), "--threads", "1"]
+    arguments += ["--steps", "2", "--batch-scenes", "2"]
+    assert main(arguments) == 0
+    assert load_weights(tmp_path / "visual_module.safetensors").backbone == "pointing"
+    assert main(arguments) == 0
+    assert "going on from step 2 of 2" in capsys.readouterr().out
+
+
+def test_the_command_says_what_is_missing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["--data", str(tmp_path / "none"), "--run", str(tmp_path)]) == 2
+    assert "render a data set" in capsys.readouterr().err
+
+
+def test_a_damaged_shard_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "shard_0000.npz").write_bytes(b"PK\x03\x04 and nothing else")
+    with pytest.raises(DatasetError, match="damaged"):
+        read_crops(tmp_path)
+    np.savez(tmp_path / "shard_0000.npz", rgb=np.zeros((1, 64, 64, 3), np.uint8))
+    with pytest.raises(DatasetError, match="lacks labels"):
+        read_crops(tmp_path)
+
+
+def test_scenes_without_usable_objects_are_refused(tmp_path: Path) -> None:
+    empty = {"rgb": np.zeros((1, 64, 64, 3), np.uint8), "labels": np.zeros((1, 64, 64), np.uint16)}
+    np.savez(tmp_path / "shard_0000.npz", **empty, names=np.array([json.dumps({})]))
+    with pytest.raises(DatasetError, match="no objects"):
+        read_crops(tmp_path)
