@@ -18,8 +18,9 @@ from scene_graph import BOX
 
 from .block_surface import BlockSurface, Interval, block_frame
 
-#: How much intervals may miss one another and still be taken to agree [m].
-AGREEMENT: Final = 0.0006
+#: How much intervals may miss one another and still be taken to agree [m]: with exact depth and
+#: calibration, and else.
+AGREEMENT: Final = (0.0006, 0.002)
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ def block_poses(
         for item in surfaces
     ]
     heights = [top - bottom for bottom, top in vertical]
-    cube = _agreed([*widths, *(Interval(h - AGREEMENT, h + AGREEMENT) for h in heights)])
+    cube = _agreed([*widths, *(Interval(h - AGREEMENT[0], h + AGREEMENT[0]) for h in heights)])
     # If they are cubes, as far as anyone can tell: heights are known better than widths.
     common = _agreed(widths) if cube is None else float(np.median(heights))
     return [
@@ -113,42 +114,47 @@ def _levels(
     Else every block by its own edges, where neighbours share one if they can.
     """
     levels = [(item.bottom.middle, item.top.middle) for item in surfaces]
-    bounds = [
-        _height_bounds([surfaces[i] for i in stack], table)
-        for stack, table in zip(stacks, table_heights)
-    ]
-    common = _agreed([bound for stack in bounds for bound in stack], slack=0.0)
-    for stack, table, bound in zip(stacks, table_heights, bounds):
-        height = common if common is not None else _agreed(bound, slack=0.0)
+    towers = [([surfaces[i] for i in stack], table) for stack, table in zip(stacks, table_heights)]
+    common = _common_height(towers)
+    for stack, tower in zip(stacks, towers):
+        table = tower[1]
+        height = _common_height([tower]) if common is None else common
         if height is not None:
             for level, index in enumerate(stack):
                 levels[index] = (table + level * height, table + (level + 1) * height)
             continue
-        below: float | None = table
+        below = table
         for index in stack:
             bottom, top = surfaces[index].bottom, surfaces[index].top
-            stands = below is not None and _distance(bottom, below) < 2.0 * AGREEMENT
-            low = below if stands and below is not None else bottom.middle
-            levels[index] = (low, top.middle)
+            stands = bottom.low - AGREEMENT[-1] <= below <= bottom.high + AGREEMENT[-1]
+            levels[index] = (below if stands else bottom.middle, top.middle)
             below = top.middle
     return levels
 
 
-def _height_bounds(stack: Sequence[BlockSurface], table: float) -> list[Interval]:
-    """What each edge says about the common height of the blocks of a stack [m]."""
-    found = []
-    for level, item in enumerate(stack):
-        edges = [(level, item.bottom), (level + 1, item.top)]
-        for count, edge in edges:
-            low, high = edge.low - table - AGREEMENT, edge.high - table + AGREEMENT
-            if count:
-                found.append(Interval(low / count, high / count))
-            elif not low <= 0.0 <= high:
-                found.append(Interval(np.inf, -np.inf))  # does not stand on the table
-    return found
+def _common_height(towers: Sequence[tuple[list[BlockSurface], float]]) -> float | None:
+    """The height of every block [m], if all could be of one height and stand on one another.
+
+    Args:
+        towers: blocks from the bottom, and the height of the table [m].
+    """
+    for slack in AGREEMENT:
+        found = []
+        for blocks, table in towers:
+            for level, item in enumerate(blocks):
+                for count, edge in ((level, item.bottom), (level + 1, item.top)):
+                    low, high = edge.low - table - slack, edge.high - table + slack
+                    if count:
+                        found.append(Interval(low / count, high / count))
+                    elif not low <= 0.0 <= high:  # does not stand on the table
+                        found.append(Interval(np.inf, -np.inf))
+        height = _agreed(found, slack=0.0)
+        if height is not None:
+            return height
+    return None
 
 
-def _agreed(intervals: Sequence[Interval], slack: float = AGREEMENT) -> float | None:
+def _agreed(intervals: Sequence[Interval], slack: float = AGREEMENT[0]) -> float | None:
     """The middle of what all intervals allow, None if they exclude one another."""
     if not intervals:
         return None
@@ -165,7 +171,3 @@ def _overlap(first: Interval, second: Interval) -> float:
     first_doubt, second_doubt = first.high - first.low + 1e-6, second.high - second.low + 1e-6
     weight = second_doubt / (first_doubt + second_doubt)
     return weight * first.middle + (1.0 - weight) * second.middle
-
-
-def _distance(interval: Interval, value: float) -> float:
-    return max(interval.low - value, value - interval.high, 0.0)

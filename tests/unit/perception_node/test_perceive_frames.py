@@ -1,0 +1,309 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Frames become scene graphs with an honest verdict; the simulator's truth is the oracle."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pybullet
+import pytest
+
+from perception_node.camera_model import PinholeCamera
+from perception_node.perception import Perceived, Perception, PerceptionConfig
+from perception_node.status import Status
+from perception_node.weights import load_weights
+from scene_graph import LEFT, Relation, Stacks, left_relations, up_relations
+from sim_node.camera import Frame
+from sim_node.layouts import random_layout
+from sim_node.world import World
+
+PERCEPTION = Perception(load_weights())
+TOWERS: Stacks = (("red_box", "blue_box", "green_box"), (), ("yellow_box", "purple_box"))
+
+
+@pytest.fixture(scope="module")
+def world() -> Iterator[World]:
+    with World() as world:
+        yield world
+
+
+def camera_of(world: World) -> PinholeCamera:
+    config = world.config.camera
+    return PinholeCamera(config.intrinsics, config.world_from_optical, config.width, config.height)
+
+
+def perceive(world: World, frame: Frame | None = None) -> Perceived:
+    frame = frame or world.render()
+    return PERCEPTION.perceive(frame.rgb, frame.labels, frame.depth, camera_of(world))
+
+
+def put(
+    world: World,
+    name: str,
+    offset: tuple[float, float, float],
+    turn: tuple[float, float, float] = (0.0, 0.0, 0.0),
+) -> None:
+    """Puts a block elsewhere: as if somebody held it there."""
+    position, _ = world.block_pose(name)
+    pybullet.resetBasePositionAndOrientation(
+        world.body(name),
+        np.add(position, offset).tolist(),
+        pybullet.getQuaternionFromEuler(turn),
+        physicsClientId=world.client,
+    )
+
+
+def move_hand(world: World, position: tuple[float, float, float]) -> None:
+    """The arm with its hand pointing down at a position [m]."""
+    joints = pybullet.calculateInverseKinematics(
+        world.robot,
+        11,
+        position,
+        pybullet.getQuaternionFromEuler((np.pi, 0.0, 0.0)),
+        maxNumIterations=200,
+        physicsClientId=world.client,
+    )
+    for index, angle in zip(world.joint_indices, joints):
+        pybullet.resetJointState(world.robot, index, angle, 0.0, physicsClientId=world.client)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("blocks", [3, 6, 7])
+def test_the_graph_of_a_random_scene_is_right_and_confident(
+    world: World, seed: int, blocks: int
+) -> None:
+    layout = random_layout(10_000 + seed, blocks)
+    world.reset(layout, seed)
+    perceived = perceive(world)
+    assert perceived.graph.relations == up_relations(layout)
+    assert perceived.graph.stacks() == layout
+    assert perceived.status is Status.CONFIDENT, perceived.message
+    assert perceived.message == ""
+
+
+def test_a_single_tower_of_seven_is_read(world: World) -> None:
+    layout: Stacks = ((), random_layout(3, 7)[0], ())
+    names = [name for stack in random_layout(3, 7) for name in stack]
+    layout = ((), tuple(names), ())
+    world.reset(layout)
+    assert perceive(world).graph.stacks() == layout
+
+
+def test_blocks_are_placed_to_three_millimetres(world: World) -> None:
+    world.reset(TOWERS, seed=4)
+    for item in perceive(world).graph.objects:
+        true_position, _ = world.block_pose(item.name)
+        assert item.position_world == pytest.approx(true_position, abs=0.003)
+        assert item.size == pytest.approx((0.045,) * 3, abs=0.002)
+        assert item.label == world.label(item.name)
+
+
+def test_cylinders_and_spheres_are_named_with_and_without_depth(world: World) -> None:
+    layout: Stacks = (("red_cylinder", "blue_sphere"), ("green_box", "yellow_cylinder"), ())
+    world.reset(layout)
+    frame = world.render()
+    assert perceive(world).graph.stacks() == layout
+    image_only = PERCEPTION.perceive(frame.rgb, frame.labels, None, camera_of(world))
+    assert image_only.graph.stacks() == layout
+
+
+def test_the_numbers_of_the_labels_mean_nothing(world: World) -> None:
+    world.reset(TOWERS)
+    frame = world.render()
+    table = np.array([0, 900, 7, 65535, 12, 300], np.uint16)
+    relabelled = replace(frame, labels=table[frame.labels])
+    assert perceive(world, relabelled).graph.relations == perceive(world).graph.relations
+
+
+def test_a_goal_image_needs_no_depth(world: World) -> None:
+    world.reset(TOWERS)
+    frame = world.render()
+    perceived = PERCEPTION.perceive(frame.rgb, frame.labels, None, camera_of(world))
+    assert perceived.status is Status.CONFIDENT
+    assert perceived.graph.relations == up_relations(TOWERS)
+
+
+def test_without_a_camera_there_are_left_relations_and_no_bases(world: World) -> None:
+    world.reset(TOWERS)
+    frame = world.render()
+    graph = PERCEPTION.perceive(frame.rgb, frame.labels).graph
+    assert graph.bases == ()
+    assert {r for r in graph.relations if r.predicate == LEFT} == left_relations(TOWERS)
+    assert Relation("green_box", "up", "blue_box") in graph.relations
+    assert not any(relation.object.startswith("stack") for relation in graph.relations)
+
+
+def test_blocks_of_one_name_are_numbered_and_do_no_harm(world: World) -> None:
+    world.reset((("red_box",), ("blue_box",), ("green_box",)))
+    frame = world.render()
+    rgb = frame.rgb.copy()
+    rgb[frame.labels > 0] = (180, 20, 20)
+    perceived = perceive(world, replace(frame, rgb=rgb))
+    assert perceived.graph.stacks() == (("red_box",), ("red_box_2",), ("red_box_3",))
+    assert perceived.status is Status.CONFIDENT
+
+
+def test_a_camera_of_another_size_reads_the_same(world: World) -> None:
+    world.reset(TOWERS)
+    frame = world.render()
+    half = Frame(frame.rgb[::2, ::2], frame.depth[::2, ::2], frame.labels[::2, ::2])
+    assert perceive(world, half).graph.stacks() == TOWERS
+
+
+def test_an_empty_table_has_no_objects(world: World) -> None:
+    world.reset(TOWERS)
+    frame = world.render()
+    nothing = replace(frame, labels=np.zeros_like(frame.labels))
+    bare = replace(nothing, depth=np.full_like(frame.depth, 3.0))
+    perceived = perceive(world, bare)
+    assert perceived.status is Status.NO_OBJECTS
+    assert perceived.graph.objects == () and len(perceived.graph.bases) == 3
+    assert "put blocks on the table" in perceived.message
+
+
+class TestTheArm:
+    @pytest.mark.parametrize("place", [0, 1, 2])
+    @pytest.mark.parametrize("height", [0.12, 0.2, 0.3])
+    def test_in_front_of_or_among_the_places_it_is_noticed(
+        self, world: World, place: int, height: float
+    ) -> None:
+        world.reset(TOWERS)
+        confidence = perceive(world).graph.confidence
+        move_hand(world, (0.5, (-0.15, 0.0, 0.15)[place], height))
+        perceived = perceive(world)
+        assert perceived.status is Status.OCCLUDED
+        assert "not a block" in perceived.message
+        assert perceived.graph.confidence < confidence
+
+    @pytest.mark.parametrize("seed", range(30))
+    def test_a_frame_in_which_it_hides_a_block_is_never_confident(
+        self, world: World, seed: int
+    ) -> None:
+        rng = np.random.default_rng(seed)
+        layout = random_layout(seed, 6)
+        world.reset(layout, seed, settle_time=0.0)
+        clear = world.render().labels
+        position = rng.uniform((0.35, -0.25, 0.1), (0.75, 0.25, 0.4))
+        move_hand(world, (position[0], position[1], position[2]))
+        hidden = np.count_nonzero((clear > 0) & (world.render().labels != clear))
+        perceived = perceive(world)
+        assert hidden == 0 or perceived.status is not Status.CONFIDENT
+
+    def test_behind_the_blocks_it_does_not_matter(self, world: World) -> None:
+        world.reset(TOWERS)
+        move_hand(world, (0.33, 0.0, 0.35))
+        assert perceive(world).status is Status.CONFIDENT
+
+
+class TestBlocksThatDoNotStand:
+    def test_a_block_in_the_air(self, world: World) -> None:
+        world.reset(TOWERS)
+        put(world, "green_box", (0.0, 0.0, 0.05))
+        perceived = perceive(world)
+        assert perceived.status is Status.UNSTABLE
+        assert "green_box is in the air" in perceived.message
+
+    def test_a_single_block_in_the_air(self, world: World) -> None:
+        world.reset(TOWERS)
+        put(world, "green_box", (0.0, 0.15, 0.1))
+        perceived = perceive(world)
+        assert perceived.status is Status.UNSTABLE
+        assert "green_box" in perceived.message
+
+    @pytest.mark.parametrize("axis", [0, 1])
+    def test_a_leaning_block(self, world: World, axis: int) -> None:
+        world.reset(TOWERS)
+        turn = (0.3, 0.0, 0.0) if axis == 0 else (0.0, 0.3, 0.0)
+        put(world, "green_box", (0.0, 0.0, 0.006), turn)
+        assert perceive(world).status is not Status.CONFIDENT
+
+    def test_a_block_between_two_places(self, world: World) -> None:
+        world.reset((("red_box",), (), ("blue_box",)))
+        put(world, "blue_box", (0.0, -0.075, 0.0))
+        perceived = perceive(world)
+        assert perceived.status is Status.UNSTABLE
+        assert "blue_box stands 7" in perceived.message
+
+    def test_a_block_in_front_of_its_place(self, world: World) -> None:
+        world.reset((("red_box",), (), ("blue_box",)))
+        put(world, "blue_box", (0.1, 0.0, 0.0))
+        assert perceive(world).status is Status.UNSTABLE
+
+    def test_more_stacks_than_places(self, world: World) -> None:
+        world.reset((("red_box",), ("green_box", "yellow_box"), ("blue_box",)))
+        put(world, "yellow_box", (0.0, 0.075, -0.045))
+        perceived = perceive(world)
+        assert perceived.status is Status.UNSTABLE
+        assert "4 stacks" in perceived.message
+
+
+class TestBadFrames:
+    @pytest.fixture
+    def frame(self, world: World) -> Frame:
+        world.reset(TOWERS)
+        return world.render()
+
+    def check(self, world: World, frame: Frame, sentence: str) -> None:
+        perceived = perceive(world, frame)
+        assert perceived.status is Status.BAD_IMAGE
+        assert sentence in perceived.message
+        assert perceived.graph.objects == ()
+
+    def test_a_segmentation_of_another_size(self, world: World, frame: Frame) -> None:
+        labels = np.zeros((100, 256), np.uint16)
+        self.check(world, replace(frame, labels=labels), "segmentation is 256x100")
+
+    def test_a_depth_image_of_another_size(self, world: World, frame: Frame) -> None:
+        self.check(world, replace(frame, depth=frame.depth[:, :100]), "depth is 100x256")
+
+    def test_an_image_without_colour(self, world: World, frame: Frame) -> None:
+        self.check(world, replace(frame, rgb=frame.rgb[..., 0]), "expected 8-bit RGB")
+
+    @pytest.mark.parametrize("value", [0.0, np.nan])
+    def test_a_block_without_depth(self, world: World, frame: Frame, value: float) -> None:
+        depth = frame.depth.copy()
+        depth[frame.labels == world.label("blue_box")] = value
+        self.check(world, replace(frame, depth=depth), "depth of the object with label")
+
+    @pytest.mark.parametrize("value", [0.0, np.nan])
+    def test_some_missing_depth_does_no_harm(
+        self, world: World, frame: Frame, value: float
+    ) -> None:
+        depth = frame.depth.copy()
+        depth[np.random.default_rng(0).random(depth.shape) < 0.1] = value
+        perceived = perceive(world, replace(frame, depth=depth))
+        assert perceived.graph.stacks() == TOWERS
+        assert perceived.status is Status.CONFIDENT, perceived.message
+
+    def test_a_label_of_a_few_pixels_is_a_speck(self, world: World, frame: Frame) -> None:
+        labels = frame.labels.copy()
+        labels[3, 3:8] = 77
+        assert perceive(world, replace(frame, labels=labels)).graph.stacks() == TOWERS
+
+    def test_places_that_the_camera_sees_in_another_order(self, world: World) -> None:
+        places = tuple(reversed(PerceptionConfig().stack_positions))
+        perception = Perception(PERCEPTION.module, PerceptionConfig(stack_positions=places))
+        frame = world.render()
+        perceived = perception.perceive(frame.rgb, frame.labels, frame.depth, camera_of(world))
+        assert perceived.status is Status.BAD_IMAGE
+        assert "stack_positions" in perceived.message
+
+
+def test_damaged_masks_lower_the_confidence(world: World) -> None:
+    world.reset(TOWERS)
+    frame = world.render()
+    labels = frame.labels.copy()
+    rows, columns = np.nonzero(labels == world.label("purple_box"))
+    labels[rows[columns > columns.mean()], columns[columns > columns.mean()]] = 0
+    perceived = perceive(world, replace(frame, labels=labels))
+    assert perceived.status is not Status.CONFIDENT
+
+
+def test_a_graph_below_the_least_confidence_says_which_block(world: World) -> None:
+    world.reset(TOWERS)
+    strict = Perception(PERCEPTION.module, PerceptionConfig(min_confidence=1.0))
+    frame = world.render()
+    perceived = strict.perceive(frame.rgb, frame.labels, frame.depth, camera_of(world))
+    assert perceived.status is Status.LOW_CONFIDENCE
+    worst = min(perceived.graph.objects, key=lambda item: item.confidence)
+    assert worst.name in perceived.message and "required: 1.00" in perceived.message
