@@ -61,7 +61,9 @@ class Narrator:
                     f"motion   {motion.duration:.0f} s of trajectory, "
                     f"optimised in {motion.optimisation_seconds:.2f} s"
                 )
-                self._bar = tqdm(total=100, desc="execute", bar_format="{l_bar}{bar}| {postfix}")
+                self._bar = tqdm(
+                    total=100, desc="execute", bar_format="{l_bar}{bar}| {postfix}", disable=None
+                )
             self._bar.n = round(100 * motion.progress)
             self._bar.set_postfix_str(
                 f"move {motion.moves_done}/{motion.moves_total} {motion.phase} {motion.object_name}"
