@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Training is self-supervised, learns, and goes on where it was stopped."""
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -130,7 +129,7 @@ def test_a_damaged_shard_is_refused(tmp_path: Path) -> None:
 
 
 def test_scenes_without_usable_objects_are_refused(tmp_path: Path) -> None:
-    empty = {"rgb": np.zeros((1, 64, 64, 3), np.uint8), "labels": np.zeros((1, 64, 64), np.uint16)}
-    np.savez(tmp_path / "shard_0000.npz", **empty, names=np.array([json.dumps({})]))
+    rgb, labels = np.zeros((1, 64, 64, 3), np.uint8), np.zeros((1, 64, 64), np.uint16)
+    np.savez(tmp_path / "shard_0000.npz", rgb=rgb, labels=labels)
     with pytest.raises(DatasetError, match="no objects"):
         read_crops(tmp_path)

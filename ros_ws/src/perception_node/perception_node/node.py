@@ -37,12 +37,14 @@ from .perception import Perceived, Perception
 from .status import Status
 from .weights import DEFAULT_WEIGHTS, load_weights
 
-#: Encodings of the three streams that make a frame.
-STREAMS: Final = {"image": "rgb8", "depth": "32FC1", "segmentation": "16UC1"}
+#: Encodings of the images of a frame.
+ENCODINGS: Final = {"image": "rgb8", "depth": "32FC1", "segmentation": "16UC1"}
+#: The four messages that make a frame.
 TOPICS: Final = {
     "image": "camera/image_raw",
     "depth": "camera/depth/image_raw",
     "segmentation": "camera/segmentation",
+    "info": "camera/camera_info",
 }
 #: After this long without a complete frame, though images arrive, the reason is published [s].
 SILENCE: Final = 2.0
@@ -52,9 +54,9 @@ class PerceptionNode(Node):
     """From camera images to scene graphs.
 
     Subscribes:
-        camera/image_raw, camera/depth/image_raw, camera/segmentation (sensor_msgs/Image): paired
-            by equal stamps; only the newest complete frame is interpreted
-        camera/camera_info (sensor_msgs/CameraInfo)
+        camera/image_raw, camera/depth/image_raw, camera/segmentation (sensor_msgs/Image) and
+            camera/camera_info (sensor_msgs/CameraInfo): paired by equal stamps; only the newest
+            complete frame is interpreted
         camera/extrinsics (geometry_msgs/TransformStamped), latched
     Publishes:
         scene_graph (tamp_interfaces/SceneGraph): one for each frame, its status says whether it can
@@ -73,7 +75,7 @@ class PerceptionNode(Node):
         weights = Path(self._values["weights"] or DEFAULT_WEIGHTS)
         module = load_weights(weights)
         self._perception = Perception(module, config_from_parameters(self._values))
-        self._pairing = FramePairing(tuple(STREAMS))
+        self._pairing = FramePairing(tuple(TOPICS))
         self._info: CameraInfo | None = None
         self._extrinsics: TransformStamped | None = None
         self._status: Status | None = None
@@ -91,12 +93,10 @@ class PerceptionNode(Node):
         self._markers = self.create_publisher(MarkerArray, "scene_graph/markers", RELIABLE)
         frames = MutuallyExclusiveCallbackGroup()
         for stream, topic in TOPICS.items():
+            kind = Image if stream in ENCODINGS else CameraInfo
             self.create_subscription(
-                Image, topic, self._receiver(stream), NEWEST, callback_group=frames
+                kind, topic, self._receiver(stream), NEWEST, callback_group=frames
             )
-        self.create_subscription(
-            CameraInfo, "camera/camera_info", self._on_info, NEWEST, callback_group=frames
-        )
         self.create_subscription(
             TransformStamped,
             "camera/extrinsics",
@@ -119,14 +119,11 @@ class PerceptionNode(Node):
         config = config_from_parameters(self._values)
         self._perception = Perception(self._perception.module, config)
 
-    def _on_info(self, message: CameraInfo) -> None:
-        self._info = message
-
     def _on_extrinsics(self, message: TransformStamped) -> None:
         self._extrinsics = message
 
-    def _receiver(self, stream: str) -> Callable[[Image], None]:
-        def receive(message: Image) -> None:
+    def _receiver(self, stream: str) -> Callable[[Any], None]:
+        def receive(message: Any) -> None:
             self._last_image = time.perf_counter()
             frame = self._pairing.add(
                 stream, stamp_nanoseconds(message.header), message, self._last_image
@@ -157,9 +154,10 @@ class PerceptionNode(Node):
         start = time.perf_counter()
         header = Header(stamp=request.image.header.stamp, frame_id=self._frame_id())
         try:
-            rgb = array_from_image(request.image, STREAMS["image"])
-            labels = array_from_image(request.segmentation, STREAMS["segmentation"])
-            camera = self._camera() if self._info and self._extrinsics else None
+            rgb = array_from_image(request.image, ENCODINGS["image"])
+            labels = array_from_image(request.segmentation, ENCODINGS["segmentation"])
+            known = self._info is not None and self._extrinsics is not None
+            camera = self._camera() if known else None
             perceived = self._perception.perceive(rgb, labels, None, camera)
         except (ImageError, BadImageError) as error:
             perceived = self._perception.rejected(Status.BAD_IMAGE, str(error))
@@ -170,13 +168,11 @@ class PerceptionNode(Node):
 
     def _interpret(self, frame: StampedSet) -> None:
         messages = frame.messages
+        self._info = messages["info"]
         header = Header(stamp=messages["image"].header.stamp, frame_id=self._frame_id())
         picture = None
         try:
-            rgb, depth, labels = (
-                self._pixels(stream, messages[stream])
-                for stream in ("image", "depth", "segmentation")
-            )
+            rgb, depth, labels = (self._pixels(stream, messages[stream]) for stream in ENCODINGS)
             if labels.shape == rgb.shape[:2]:
                 picture = rgb, labels
             perceived = self._perception.perceive(rgb, labels, depth, self._camera())
@@ -191,15 +187,16 @@ class PerceptionNode(Node):
 
     def _pixels(self, stream: str, message: Image) -> Any:
         try:
-            return array_from_image(message, STREAMS[stream])
+            return array_from_image(message, ENCODINGS[stream])
         except ImageError as error:
             raise BadImageError(f"{TOPICS[stream]}: {error}") from error
 
     def _camera(self) -> PinholeCamera:
         """Raises BadImageError while the camera is unknown."""
         if self._info is None or self._extrinsics is None:
-            topic = "camera/camera_info" if self._info is None else "camera/extrinsics"
-            raise BadImageError(f"no {topic} has arrived yet; is the camera's driver complete?")
+            raise BadImageError(
+                "camera/extrinsics has not arrived yet; is the camera's driver complete?"
+            )
         return camera_from_messages(self._info, self._extrinsics)
 
     def _frame_id(self) -> str:
