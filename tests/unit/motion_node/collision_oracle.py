@@ -15,6 +15,8 @@ import pybullet
 import pybullet_data
 from numpy.typing import NDArray
 
+from motion_node.optimiser import Motion
+from motion_node.phases import PICK, PLACE
 from scene_graph import Move, SceneGraph, apply_move
 
 Array = NDArray[np.float64]
@@ -24,11 +26,26 @@ FAR = 0.2
 
 @dataclass(frozen=True)
 class Nearest:
-    """The smallest distance found between two kinds of things [m]."""
+    """The smallest distance found between two things at one moment of a trajectory [m]."""
 
     distance: float
     what: str
     time: float
+
+
+@dataclass(frozen=True)
+class Replay:
+    """What a replayed plan came to.
+
+    Attributes:
+        free: the nearest that things came that must not touch.
+        support: the nearest that a held block came to what it stands on, next to a switch.
+        positions: where the blocks ended [m].
+    """
+
+    free: Nearest
+    support: Nearest
+    positions: dict[str, Array]
 
 
 class CollisionOracle:
@@ -108,35 +125,31 @@ class CollisionOracle:
         inverse = pybullet.invertTransform(*self.hand_pose())
         self.held = (name, *pybullet.multiplyTransforms(*inverse, *pose))
 
-    def release(self, move: Move) -> None:
-        """The held block stays where it is, on top of the move's target."""
+    def release(self, name: str, move: Move, drop: float) -> None:
+        """The held block falls by ``drop`` [m] onto what it was held above."""
+        body = self.blocks[name]
+        position, quaternion = pybullet.getBasePositionAndOrientation(
+            body, physicsClientId=self.client
+        )
+        pybullet.resetBasePositionAndOrientation(
+            body, np.subtract(position, (0, 0, drop)), quaternion, physicsClientId=self.client
+        )
         self.held = None
         self.stacks = apply_move(self.stacks, move)
 
-    def support_of(self, name: str) -> int:
-        """What a block stands on."""
-        stack = next(stack for stack in self.stacks if name in stack)
-        level = stack.index(name)
-        return self.blocks[stack[level - 1]] if level else self.table
+    def nearest(self, time: float) -> tuple[Nearest, Nearest]:
+        """The two things that are nearest, and the held block and another block or the table.
 
-    def nearest(self, time: float, touching: Sequence[str] = ()) -> Nearest:
-        """The two things that are nearest to one another.
-
-        Args:
-            touching: blocks that the fingers are meant to be around.
+        What is held touches the fingers; the arm's base stands on the table.
         """
-        found = Nearest(FAR, "", time)
         held = self.held[0] if self.held else ""
-        for name, body in self.blocks.items():
-            if name == held:
-                continue
-            found = self._robot_to(body, name, found, name in touching)
+        robot = carried = Nearest(FAR, "", time)
+        others = [(name, body) for name, body in self.blocks.items() if name != held]
+        for name, body in [*others, ("table", self.table)]:
+            robot = self._robot_to(body, name, robot)
             if held:
-                found = self._pair(self.blocks[held], body, f"{held} to {name}", found)
-        found = self._robot_to(self.table, "table", found, False)
-        if held:
-            found = self._pair(self.blocks[held], self.table, f"{held} to table", found)
-        return found
+                carried = self._pair(self.blocks[held], body, f"{held} to {name}", carried)
+        return robot, carried
 
     def _pair(self, body: int, other: int, what: str, found: Nearest) -> Nearest:
         for point in pybullet.getClosestPoints(body, other, FAR, physicsClientId=self.client):
@@ -144,13 +157,63 @@ class CollisionOracle:
                 found = Nearest(point[8], what, found.time)
         return found
 
-    def _robot_to(self, body: int, name: str, found: Nearest, fingers_may: bool) -> Nearest:
+    def _robot_to(self, body: int, name: str, found: Nearest) -> Nearest:
         for point in pybullet.getClosestPoints(self.robot, body, FAR, physicsClientId=self.client):
             link = self.link_names.get(point[3], "panda_link0")
             if name == "table" and link in ("panda_link0", "panda_link1"):
                 continue
-            if fingers_may and "finger" in link:
-                continue
             if point[8] < found.distance:
                 found = Nearest(point[8], f"{link} to {name}", found.time)
         return found
+
+
+def replay(
+    graph: SceneGraph,
+    moves: Sequence[Move],
+    motion: Motion,
+    place_gap: float,
+    vertical: float,
+    step: float = 0.04,
+) -> Replay:
+    """Carries a plan out without dynamics and looks how near things come.
+
+    Args:
+        place_gap: height from which blocks are let go [m].
+        vertical: a held block may touch what it stands on within this height above a switch [m].
+        step: between looks [s].
+    """
+    oracle = CollisionOracle(graph)
+    trajectory = motion.trajectory
+    free = support = Nearest(FAR, "", 0.0)
+    half = graph.objects[0].size[0] / 2
+    try:
+        for interval in trajectory.intervals:
+            phase = interval.phase
+            if interval.gripping:
+                oracle.set_joints(trajectory.joint_names, trajectory.sample(interval.end)[0])
+                if phase.kind == PICK:
+                    oracle.grasp(phase.object_name)
+                elif phase.kind == PLACE:
+                    oracle.release(phase.object_name, moves[phase.move], place_gap)
+                continue
+            for time in np.arange(interval.start, interval.end, step):
+                joints = trajectory.sample(time)[0]
+                if oracle.held:
+                    joints[-2:] = half
+                oracle.set_joints(trajectory.joint_names, joints)
+                robot, carried = oracle.nearest(float(time))
+                hand = np.array(oracle.hand_pose()[0])
+                near_switch = any(
+                    np.hypot(*(hand[:2] - switch.position_world[:2])) < 0.004
+                    and hand[2] < switch.position_world[2] + vertical
+                    for switch in (phase.start, phase.switch)
+                    if switch
+                )
+                free = min(free, robot, key=lambda item: item.distance)
+                if near_switch:
+                    support = min(support, carried, key=lambda item: item.distance)
+                else:
+                    free = min(free, carried, key=lambda item: item.distance)
+        return Replay(free, support, {name: oracle.block_position(name) for name in oracle.blocks})
+    finally:
+        oracle.close()

@@ -17,7 +17,8 @@ from .features import Features
 from .inverse_kinematics import InverseKinematics
 from .keyframes import Clearances, Keyframes
 from .kinematics import Kinematics
-from .path_problem import PathProblem, PathSettings, PhasePath
+from .path_problem import PathProblem, PhasePath
+from .phase_bounds import PathSettings
 from .phases import HOME, Phase, PhaseSettings, expand, read_scene, too_wide, way_home
 from .robot import PANDA, RobotGeometry
 from .timing import JointLimits, TimingSettings, time_paths
@@ -177,10 +178,10 @@ class MotionOptimiser:
         clear = Clearances(self.settings.path.margin, floor)
         switching = [phase for phase in phases if phase.kind != HOME]
         configurations = [arm, *keyframes.solve(arm, switching, clear), self.home]
-        paths = []
+        paths: list[PhasePath] = []
         for phase, start, goal in zip(phases, configurations, configurations[1:]):
             check()
-            paths.append(problem.solve(phase, start, goal, clear))
+            paths += problem.solve([phase], [start, goal], clear)
         check()
         names = self.robot.arm_joints + self.robot.finger_joints
         trajectory = time_paths(

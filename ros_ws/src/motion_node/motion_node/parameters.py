@@ -11,7 +11,7 @@ from tamp_runtime.parameters import ParameterSpec
 from .following import ExecutionSettings
 from .monitor import MonitorSettings
 from .optimiser import Settings
-from .path_problem import PathSettings
+from .phase_bounds import PathSettings
 from .phases import PhaseSettings
 from .timing import TimingSettings
 

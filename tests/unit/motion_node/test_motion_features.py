@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pybullet
+import pybullet_data
+import pytest
+from collision_oracle import CollisionOracle
+from motion_scenes import scene
+from numpy.typing import NDArray
+
+from motion_node.features import LEAN_ROWS, Feature, Features
+from motion_node.inverse_kinematics import InverseKinematics
+from motion_node.optimiser import MotionOptimiser
+from motion_node.phases import open_tool, read_scene
+from motion_node.robot import PANDA
+
+Array = NDArray[np.float64]
+
+
+def parameters_of(features: Features, which: str, rng: np.random.Generator) -> Array:
+    if which == "switch":
+        return rng.uniform(-0.5, 0.5, 3)
+    columns = read_scene(scene((3, 1, 2))).columns()
+    return features.mode(columns, open_tool(PANDA), 0.0, 0.015)
+
+
+@pytest.mark.parametrize("which", ["path", "switch"])
+def test_derivatives_match_finite_differences(features: Features, which: str) -> None:
+    feature: Feature = getattr(features, which)
+    rng = np.random.default_rng(1)
+    for _ in range(5):
+        q = np.array(PANDA.home) + rng.uniform(-0.4, 0.4, 7)
+        parameters = parameters_of(features, which, rng)
+        multipliers = rng.normal(size=feature.rows)
+        step = 1e-6
+        jacobian = np.array(feature.jacobian(q, parameters))
+        curvature = np.array(feature.curvature(q, parameters, multipliers))
+        for joint in range(7):
+            ahead, behind = q.copy(), q.copy()
+            ahead[joint] += step
+            behind[joint] -= step
+            values = [np.array(feature.value(x, parameters)).ravel() for x in (ahead, behind)]
+            slopes = [
+                multipliers @ np.array(feature.jacobian(x, parameters)) for x in (ahead, behind)
+            ]
+            difference = (values[0] - values[1]) / (2 * step)
+            np.testing.assert_allclose(jacobian[:, joint], difference, atol=1e-6)
+            difference = (slopes[0] - slopes[1]) / (2 * step)
+            np.testing.assert_allclose(curvature[:, joint], difference, atol=2e-3, rtol=1e-4)
+
+
+def test_clearance_is_never_larger_than_the_meshes_distance(
+    features: Features, optimiser: MotionOptimiser
+) -> None:
+    """The safe side: what counts as clear is clear, for postures in which the hand points down."""
+    graph = scene((6, 0, 0))
+    oracle = CollisionOracle(graph)
+    columns = read_scene(graph).columns()
+    mode = features.mode(columns, open_tool(PANDA), 0.0, 0.0)
+    names = features.path_names(open_tool(PANDA))
+    inverse = InverseKinematics(features, optimiser.lower, optimiser.upper)
+    links = {
+        "hand": ("panda_hand", "panda_link7", "panda_leftfinger", "panda_rightfinger"),
+        "wrist": ("panda_link6",),
+        "forearm": ("panda_link5",),
+    }
+    rng = np.random.default_rng(2)
+    checked = 0
+    for _ in range(150):
+        point = rng.uniform((0.35, -0.3, 0.03), (0.65, 0.2, 0.45))
+        near = np.array(PANDA.home) + rng.uniform(-0.6, 0.6, 7)
+        near[6] -= np.pi / 2
+        q = inverse.solve(point, np.array([0.0]), near)[0]
+        if np.abs(inverse.residual(q[None], point)).max() > 1e-3:
+            continue
+        oracle.set_joints(PANDA.arm_joints + PANDA.finger_joints, np.array([*q, 0.04, 0.04]))
+        gaps = np.array(features.path.value(q, mode)).ravel()
+        for body, parts in links.items():
+            gap = min(g for g, name in zip(gaps, names) if name == f"clearance of {body} to stack0")
+            distance = min(
+                point[8]
+                for block in oracle.stacks[0]
+                for part in parts
+                for point in pybullet.getClosestPoints(
+                    oracle.robot,
+                    oracle.blocks[block],
+                    1.0,
+                    linkIndexA=oracle.links[part],
+                    physicsClientId=oracle.client,
+                )
+            )
+            if gap > 0:
+                checked += 1
+                assert distance > 0
+                # One axis parts them by no more than their distance.
+                assert gap <= distance + 0.002, (body, q, gap, distance)
+    assert checked > 100
+    oracle.close()
+
+
+def mesh(name: str) -> Array:
+    path = Path(pybullet_data.getDataPath()) / "franka_panda" / "meshes" / f"{name}.obj"
+    lines = path.read_text(encoding="utf-8").splitlines()
+    return np.array([[float(v) for v in line.split()[1:4]] for line in lines if line[:2] == "v "])
+
+
+@pytest.mark.parametrize("link", ["link5", "link6"])
+def test_spheres_cover_the_meshes(link: str) -> None:
+    vertices = mesh(f"visual/{link}")
+    spheres = [body for body in PANDA.bodies if body.link == f"panda_{link}"]
+    outside = np.min(
+        [np.linalg.norm(vertices - body.center, axis=1) - body.radius for body in spheres], axis=0
+    )
+    assert outside.max() < 0.002
+
+
+def test_the_hands_box_covers_hand_and_flange() -> None:
+    hand = mesh("visual/hand")
+    turn = np.array([[np.cos(0.785), -np.sin(0.785)], [np.sin(0.785), np.cos(0.785)]])
+    flange = mesh("collision/link7") - (0, 0, 0.107)
+    flange[:, :2] = flange[:, :2] @ turn.T  # link7 to hand: 45 degrees about z
+    for vertices in (hand, flange):
+        assert np.abs(vertices[:, 0]).max() < PANDA.hand_half[0] + 1e-3
+        assert np.abs(vertices[:, 1]).max() < PANDA.hand_half[1] + 1e-3
+        assert vertices[:, 2].min() > PANDA.hand_top - 1e-3
+    assert hand[:, 2].max() <= PANDA.palm + 1e-3
+
+
+def test_rows_have_names(features: Features) -> None:
+    names = features.path_names(open_tool(PANDA))
+    assert len(names) == features.path.rows
+    assert names[features.tool_floor_row] == "clearance of hand to the table"
+    assert set(names[:LEAN_ROWS]) == {"tilt of the hand"}
+    assert "clearance of hand to stack1" in names

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The monitor against arms that do as told, late, slowly, or not at all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from motion_scenes import EDGE, scene
+from numpy.typing import NDArray
+
+from motion_node.arm_state import ArmState
+from motion_node.monitor import Monitor, MonitorSettings, Verdict
+from motion_node.optimiser import MotionOptimiser
+from motion_node.robot import PANDA
+from motion_node.trajectory import Trajectory
+from scene_graph import Move
+
+Array = NDArray[np.float64]
+HOME = np.array([*PANDA.home, 0.04, 0.04])
+
+
+@pytest.fixture(scope="module")
+def trajectory(optimiser: MotionOptimiser) -> Trajectory:
+    graph = scene((2, 1, 0), np.random.default_rng(1))
+    return optimiser.solve(graph, [Move(0, 2), Move(1, 2)], HOME[:7], HOME[7:]).trajectory
+
+
+def squeezed(positions: Array) -> Array:
+    """Fingers cannot close farther than the block between them."""
+    return np.concatenate([positions[:7], np.maximum(positions[7:], EDGE / 2)])
+
+
+def watch(
+    trajectory: Trajectory,
+    arm: Callable[[float], Array],
+    *,
+    settings: MonitorSettings | None = None,
+    speed: float = 1.0,
+    rate: float = 60.0,
+    until: float = 200.0,
+) -> tuple[Verdict, float, Monitor, list[float]]:
+    """Feeds joint states until a verdict other than GOING; returns it, and its time.
+
+    ``arm`` gives the joints at a time after sending; ``speed`` is that of the driver's clock.
+    """
+    monitor = Monitor(
+        trajectory, ArmState(1000.0, 0.0, arm(0.0), 1.0), settings or MonitorSettings()
+    )
+    errors = []
+    time = 0.0
+    while time < until:
+        time += 1.0 / rate
+        verdict = monitor.update(ArmState(1000.0 + time, time / speed, arm(time), 0.0))
+        errors.append(monitor.time)
+        if verdict is not Verdict.GOING:
+            return verdict, time, monitor, errors
+    return Verdict.GOING, time, monitor, errors
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.1, 0.7, 2.5])
+@pytest.mark.parametrize("lag", [0.0, 0.05])
+def test_it_finds_when_the_arm_started(trajectory: Trajectory, delay: float, lag: float) -> None:
+    verdict, time, _, times = watch(
+        trajectory, lambda t: squeezed(trajectory.sample(t - delay - lag)[0])
+    )
+    assert verdict is Verdict.ARRIVED
+    assert time == pytest.approx(trajectory.duration + delay + lag, abs=0.25)
+    true = np.clip(np.arange(1, len(times) + 1) / 60 - delay - lag, 0, trajectory.duration)
+    # Where the arm stands still, the time cannot be seen; it is guessed well all the same.
+    assert np.abs(np.array(times) - true).max() < 0.3
+
+
+@pytest.mark.parametrize("speed", [0.1, 30.0])
+def test_the_speed_of_a_simulation_does_not_matter(trajectory: Trajectory, speed: float) -> None:
+    delay = 0.05 * speed
+    verdict, _, _, _ = watch(
+        trajectory, lambda t: squeezed(trajectory.sample(t - delay)[0]), speed=speed
+    )
+    assert verdict is Verdict.ARRIVED
+
+
+def test_an_arm_that_does_not_start_is_noticed(trajectory: Trajectory) -> None:
+    verdict, time, _, _ = watch(trajectory, lambda _t: HOME)
+    assert verdict is Verdict.NOT_STARTED
+    assert time == pytest.approx(3.0, abs=0.1)
+
+
+def test_an_arm_that_gets_stuck_is_noticed(trajectory: Trajectory) -> None:
+    stuck = 0.4 * trajectory.duration
+    verdict, time, monitor, _ = watch(
+        trajectory, lambda t: squeezed(trajectory.sample(min(t, stuck))[0])
+    )
+    assert verdict in (Verdict.BEHIND, Verdict.OFF_THE_PATH)
+    assert stuck < time < stuck + 3.5
+    assert monitor.time == pytest.approx(stuck, abs=1.0)
+
+
+def test_an_arm_that_is_pushed_aside_is_noticed(trajectory: Trajectory) -> None:
+    def arm(t: float) -> Array:
+        push = np.zeros(9)
+        push[3] = 0.4 if t > 4.0 else 0.0
+        return squeezed(trajectory.sample(t)[0]) + push
+
+    verdict, time, _, _ = watch(trajectory, arm)
+    assert verdict is Verdict.OFF_THE_PATH
+    assert time == pytest.approx(4.3, abs=0.1)
+
+
+def test_a_short_disturbance_is_tolerated(trajectory: Trajectory) -> None:
+    def arm(t: float) -> Array:
+        push = np.zeros(9)
+        push[3] = 0.4 if 4.0 < t < 4.2 else 0.0
+        return squeezed(trajectory.sample(t)[0]) + push
+
+    assert watch(trajectory, arm)[0] is Verdict.ARRIVED
+
+
+def test_fingers_that_close_on_nothing_are_noticed(trajectory: Trajectory) -> None:
+    verdict, _, monitor, _ = watch(trajectory, lambda t: trajectory.sample(t)[0])
+    assert verdict is Verdict.GRASP_LOST
+    interval = trajectory.interval_at(monitor.time)
+    assert interval is trajectory.intervals[2]
+    assert monitor.time < interval.start + 0.3
+
+
+def test_a_block_that_slips_on_the_way_is_noticed(trajectory: Trajectory) -> None:
+    travel = trajectory.intervals[2]
+    slip = (travel.start + travel.end) / 2
+
+    def arm(t: float) -> Array:
+        joints = trajectory.sample(t)[0]
+        return squeezed(joints) if t < slip else joints
+
+    verdict, time, _, _ = watch(trajectory, arm)
+    assert verdict is Verdict.GRASP_LOST
+    assert time == pytest.approx(slip + 0.1, abs=0.08)
+
+
+@pytest.mark.parametrize("error", [-0.003, 0.003])
+def test_a_wrong_guess_of_the_blocks_size_is_no_lost_grasp(
+    trajectory: Trajectory, error: float
+) -> None:
+    def arm(t: float) -> Array:
+        joints = trajectory.sample(t)[0]
+        return np.concatenate([joints[:7], np.maximum(joints[7:], EDGE / 2 + error)])
+
+    assert watch(trajectory, arm)[0] is Verdict.ARRIVED
+
+
+def test_an_arm_that_stops_short_of_the_end_is_noticed(trajectory: Trajectory) -> None:
+    def arm(t: float) -> Array:
+        joints = squeezed(trajectory.sample(t)[0])
+        if t > trajectory.duration - 0.1:
+            joints[1] += 0.05
+        return joints
+
+    assert watch(trajectory, arm)[0] is Verdict.NOT_ARRIVED
+
+
+def test_a_clock_that_goes_back_is_noticed(trajectory: Trajectory) -> None:
+    monitor = Monitor(trajectory, ArmState(100.0, 0.0, HOME, 1.0), MonitorSettings())
+    assert monitor.update(ArmState(100.1, 0.1, HOME, 1.0)) is Verdict.GOING
+    assert monitor.update(ArmState(0.0, 0.2, HOME, 0.0)) is Verdict.CLOCK_WENT_BACK

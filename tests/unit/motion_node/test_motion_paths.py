@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Optimised motions, judged by pybullet's collision distances and by the limits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from collision_oracle import replay
+from motion_scenes import EDGE, random_heights, random_moves, scene
+
+from motion_node.optimiser import Motion, MotionOptimiser
+from motion_node.phases import HOME, PICK, PLACE
+from motion_node.robot import PANDA
+from scene_graph import Move, apply_move
+
+HOME_Q = np.array(PANDA.home)
+OPEN = np.array([0.04, 0.04])
+#: Meshes keep this distance from what they must not touch [m]; the palm comes nearest, to the
+#: block that the fingers hold.
+FREE = 0.008
+
+
+def judge(optimiser: MotionOptimiser, graph, moves: list[Move], start=HOME_Q) -> Motion:  # type: ignore[no-untyped-def]
+    motion = optimiser.solve(graph, moves, start, OPEN)
+    result = replay(graph, moves, motion, optimiser.settings.phases.place_gap, vertical=0.03)
+    assert result.free.distance > FREE, result.free
+    assert result.support.distance > -0.001, result.support
+    stacks = graph.stacks()
+    for move in moves:
+        stacks = apply_move(stacks, move)
+    moved = {phase.object_name for phase in motion.phases}
+    for stack, base in zip(stacks, graph.bases):
+        for level, name in enumerate(stack):
+            position = result.positions[name]
+            assert position[2] == pytest.approx((level + 0.5) * EDGE, abs=2e-3), name
+            off = np.abs(position[:2] - base.position_world[:2]).max()
+            assert off < (1e-3 if name in moved else 6e-3), name
+    return motion
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_random_plans_touch_nothing(optimiser: MotionOptimiser, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    graph = scene(random_heights(rng, int(rng.integers(3, 8))), rng)
+    judge(optimiser, graph, random_moves(graph, int(rng.integers(1, 5)), rng))
+
+
+@pytest.mark.parametrize(
+    ("heights", "moves"),
+    [
+        ((3, 1, 3), [(1, 0), (2, 1)]),
+        ((6, 1, 0), [(1, 2), (0, 1)]),
+        ((0, 6, 1), [(2, 0), (0, 2)]),
+        ((1, 5, 1), [(0, 2), (2, 0)]),
+        ((7, 0, 0), [(0, 1), (0, 2)]),
+        ((1, 0, 6), [(0, 1), (1, 2)]),
+    ],
+)
+def test_low_blocks_beside_tall_towers(
+    optimiser: MotionOptimiser, heights: tuple[int, ...], moves: list[tuple[int, int]]
+) -> None:
+    judge(optimiser, scene(heights, np.random.default_rng(0)), [Move(*m) for m in moves])
+
+
+def test_blocks_may_be_turned(optimiser: MotionOptimiser) -> None:
+    rng = np.random.default_rng(12)
+    judge(optimiser, scene((2, 2, 2), rng, yaw=0.5, offset=0.002), [Move(0, 1), Move(2, 0)])
+
+
+@pytest.mark.parametrize("height", [0.0, 0.035, 0.06])
+def test_an_arm_that_starts_over_a_stack_rises_first(
+    optimiser: MotionOptimiser, height: float
+) -> None:
+    """Above the top block: around it, just over it, and well over it."""
+    graph = scene((2, 2, 0))
+    keyframes, _ = optimiser.prepare(3)
+    near = HOME_Q.copy()
+    near[0], near[6] = -0.3, -1.1
+    above = np.array([0.5, -0.15, 1.5 * EDGE + height])
+    start = keyframes.inverse.solve(above, np.zeros(1), near)[0]
+    motion = judge(optimiser, graph, [Move(1, 2)], start)
+    points = [
+        keyframes.features.hand_pose(q)[0]
+        for q in motion.trajectory.sample(np.linspace(0, 0.3, 10))[0][:, :7]
+    ]
+    assert all(np.hypot(*(point[:2] - above[:2])) < 0.01 or point[2] > above[2] for point in points)
+
+
+def test_limits_hold_everywhere(optimiser: MotionOptimiser) -> None:
+    rng = np.random.default_rng(20)
+    graph = scene((3, 2, 1), rng)
+    trajectory = optimiser.solve(graph, random_moves(graph, 4, rng), HOME_Q, OPEN).trajectory
+    times = np.arange(0.0, trajectory.duration, 0.001)
+    positions, velocities = trajectory.sample(times)
+    arm, speed = positions[:, :7], np.abs(velocities[:, :7])
+    assert (arm >= optimiser.kinematics.lower).all()
+    assert (arm <= optimiser.kinematics.upper).all()
+    timing = optimiser.timing
+    assert (speed <= timing.velocity_scale * optimiser.limits.velocity * 1.001).all()
+    acceleration = np.abs(np.diff(velocities[:, :7], axis=0)) / 0.001
+    allowed = timing.acceleration_scale * optimiser.limits.acceleration
+    assert (acceleration <= allowed * 1.01).all()
+    fingers = positions[:, 7:]
+    assert fingers.min() >= 0.0
+    assert fingers.max() <= 0.04 + 1e-9
+    assert np.abs(velocities[:, 7:]).max() <= 0.2
+    # Positions agree with velocities, so there are no jumps.
+    np.testing.assert_allclose(np.diff(positions, axis=0) / 0.001, velocities[:-1], atol=0.03)
+
+
+def test_at_switches_the_hand_stands_still_straight_down_at_the_grasp(
+    optimiser: MotionOptimiser,
+) -> None:
+    rng = np.random.default_rng(21)
+    graph = scene((2, 2, 2), rng)
+    motion = optimiser.solve(graph, random_moves(graph, 3, rng), HOME_Q, OPEN)
+    features = optimiser.prepare(3)[0].features
+    gripping = [interval for interval in motion.trajectory.intervals if interval.gripping]
+    assert [i.phase.kind for i in gripping] == [PICK, PLACE] * 3
+    for interval in gripping:
+        for time in np.linspace(interval.start, interval.end, 5):
+            positions, velocities = motion.trajectory.sample(time)
+            assert np.abs(velocities[:7]).max() < 1e-6
+            point, yaw = features.hand_pose(positions[:7])
+            switch = interval.phase.switch
+            assert switch is not None
+            assert point == pytest.approx(switch.position_world, abs=2e-4)
+            assert abs(np.sin(yaw - switch.yaw)) < 2e-4
+        ends = motion.trajectory.sample(np.array([interval.start, interval.end]))[0][:, 7]
+        assert ends[1] == pytest.approx(interval.phase.grip)
+        assert (ends[1] < ends[0]) == (interval.phase.kind == PICK)
+
+
+def test_the_hand_comes_from_above_and_leaves_upwards(optimiser: MotionOptimiser) -> None:
+    rng = np.random.default_rng(22)
+    graph = scene((1, 3, 2), rng)
+    motion = optimiser.solve(graph, random_moves(graph, 3, rng), HOME_Q, OPEN)
+    features = optimiser.prepare(3)[0].features
+    for interval in motion.trajectory.intervals:
+        if interval.gripping:
+            continue
+        times = np.linspace(interval.start, interval.end, 60)
+        points = np.array(
+            [features.hand_pose(q)[0] for q in motion.trajectory.sample(times)[0][:, :7]]
+        )
+        for switch in (interval.phase.start, interval.phase.switch):
+            if switch is None:
+                continue
+            near = points[points[:, 2] < switch.position_world[2] + 0.02]
+            aside = np.hypot(*(near[:, :2] - switch.position_world[:2]).T)
+            low = aside[aside < 0.05]
+            assert low.size
+            assert low.max() < 0.003
+
+
+def test_the_motion_ends_at_home_with_open_fingers(optimiser: MotionOptimiser) -> None:
+    motion = optimiser.solve(scene((2, 0, 1)), [Move(0, 1)], HOME_Q, OPEN)
+    assert motion.trajectory.intervals[-1].phase.kind == HOME
+    np.testing.assert_allclose(motion.trajectory.positions[-1], [*PANDA.home, 0.04, 0.04])
+    assert not motion.trajectory.velocities[-1].any()
+
+
+def test_fingers_that_are_closed_open_before_the_arm_moves(optimiser: MotionOptimiser) -> None:
+    motion = optimiser.solve(scene((2, 0, 1)), [Move(0, 1)], HOME_Q, np.zeros(2))
+    first = motion.trajectory.intervals[0]
+    assert first.gripping
+    positions = motion.trajectory.sample(np.array([0.0, first.end]))[0]
+    np.testing.assert_allclose(positions[0], [*PANDA.home, 0.0, 0.0])
+    np.testing.assert_allclose(positions[1], [*PANDA.home, 0.04, 0.04])
+
+
+def test_the_way_home_from_a_grasp_touches_nothing(optimiser: MotionOptimiser) -> None:
+    graph = scene((3, 1, 3))
+    moves = [Move(1, 0)]
+    motion = optimiser.solve(graph, moves, HOME_Q, OPEN)
+    pick = motion.trajectory.intervals[0]
+    arm = motion.trajectory.sample(pick.end)[0][:7]
+    home = optimiser.solve_way_home(motion, 0, arm, np.array([0.03, 0.03]))
+    result = replay(graph, [], home, 0.0, vertical=0.03)
+    assert result.free.distance > FREE, result.free
+    np.testing.assert_allclose(home.trajectory.positions[-1, :7], PANDA.home)

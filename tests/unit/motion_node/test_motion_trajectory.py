@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from motion_scenes import scene
+
+from motion_node.optimiser import MotionOptimiser
+from motion_node.phases import HOME, PICK
+from motion_node.robot import PANDA
+from motion_node.timing import JointLimits, shortest_duration, unit_spline
+from motion_node.trajectory import Trajectory
+from scene_graph import Move
+
+
+@pytest.fixture(scope="module")
+def trajectory(optimiser: MotionOptimiser) -> Trajectory:
+    graph = scene((2, 1, 0), np.random.default_rng(1))
+    home = np.array(PANDA.home)
+    return optimiser.solve(graph, [Move(0, 2), Move(1, 2)], home, np.array([0.04, 0.04])).trajectory
+
+
+def test_the_shortest_duration_just_keeps_the_limits() -> None:
+    rng = np.random.default_rng(0)
+    limits = JointLimits(np.full(7, 2.0), np.full(7, 9.0))
+    for _ in range(20):
+        spline = unit_spline(rng.normal(size=(12, 7)))
+        duration = shortest_duration(spline, limits)
+        dense = np.linspace(0, 1, 5001)
+        velocity = np.abs(spline(dense, 1)).max() / duration
+        acceleration = np.abs(spline(dense, 2)).max() / duration**2
+        assert velocity <= 2.0 * (1 + 1e-9)
+        assert acceleration <= 9.0 * (1 + 1e-9)
+        assert velocity > 1.99 or acceleration > 8.99
+
+
+def test_intervals_follow_one_another(trajectory: Trajectory) -> None:
+    intervals = trajectory.intervals
+    assert intervals[0].start == 0.0
+    for before, after in pairwise(intervals):
+        assert after.start == pytest.approx(before.end)
+    assert intervals[-1].end == pytest.approx(trajectory.duration)
+    assert (np.diff(trajectory.times) > 1e-3).all()
+    assert np.diff(trajectory.times[:-1]).max() < 0.5
+
+
+def test_moves_are_done_when_their_block_is_let_go(trajectory: Trajectory) -> None:
+    done = [trajectory.moves_done(t) for t in np.linspace(0, trajectory.duration, 200)]
+    assert done[0] == 0
+    assert done[-1] == 2
+    assert done == sorted(done)
+    place = next(i for i in trajectory.intervals if i.gripping and i.phase.kind != PICK)
+    assert trajectory.moves_done(place.end - 0.01) == 0
+    assert trajectory.moves_done(place.end + 0.01) == 1
+
+
+@pytest.mark.parametrize("share", [0.05, 0.3, 0.55, 0.8])
+def test_braking_stays_on_the_path_and_starts_with_the_speed_of_the_moment(
+    trajectory: Trajectory, share: float
+) -> None:
+    start = share * trajectory.duration
+    brake = trajectory.brake(start, 0.4)
+    assert brake.duration == pytest.approx(0.4)
+    np.testing.assert_allclose(brake.positions[0], trajectory.sample(start)[0])
+    np.testing.assert_allclose(brake.velocities[0, :7], trajectory.sample(start)[1][:7], atol=1e-9)
+    assert not brake.velocities[-1].any()
+    path = trajectory.sample(np.linspace(start, start + 0.4, 400))[0][:, :7]
+    for q in brake.positions[:, :7]:
+        assert np.abs(path - q).max(axis=1).min() < 0.01
+    assert np.ptp(brake.positions[:, 7:], axis=0).max() == 0.0
+    step = np.diff(brake.times)[:, None]
+    np.testing.assert_allclose(
+        np.diff(brake.positions, axis=0) / step,
+        (brake.velocities[1:] + brake.velocities[:-1]) / 2,
+        atol=0.05,
+    )
+
+
+def test_braking_does_not_run_past_a_switch(trajectory: Trajectory) -> None:
+    travel = trajectory.intervals[0]
+    brake = trajectory.brake(travel.end - 0.05, 0.6)
+    np.testing.assert_allclose(brake.positions[-1], trajectory.sample(travel.end)[0], atol=1e-9)
+
+
+def test_braking_while_the_fingers_move_holds_arm_and_fingers(trajectory: Trajectory) -> None:
+    grip = trajectory.intervals[1]
+    assert grip.gripping
+    brake = trajectory.brake(grip.start + 0.1, 0.4)
+    assert np.ptp(brake.positions, axis=0).max() == 0.0
+
+
+def test_the_last_interval_is_the_way_home(trajectory: Trajectory) -> None:
+    assert trajectory.interval_at(1e9).phase.kind == HOME
+    assert trajectory.interval_at(-1.0) is trajectory.intervals[0]
