@@ -181,7 +181,9 @@ class Executive:
         """Brakes, opens the fingers, rises, and goes home."""
         phase = follower.interval.phase
         moves_done = phase.move + 1 if follower.let_go else phase.move
-        self._tell(State.EXECUTING, f"{why}; going home", moves_done=moves_done, phase=HOME)
+        self._tell(
+            State.EXECUTING, f"{why}; going home", moves_done=moves_done, phase=HOME, object_name=""
+        )
         state = follower.brake()
         home = optimiser.solve_way_home(
             motion, moves_done, state.positions[:-2], state.positions[-2:]

@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The motion node's neighbours without physics: an arm's driver, and a planner that only talks."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pybullet_data
+from numpy.typing import NDArray
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from scipy.interpolate import CubicHermiteSpline
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Header, String
+from tamp_interfaces.msg import (
+    Base,
+    MotionStatus,
+    Move,
+    Relation,
+    SceneGraph,
+    SceneObject,
+    SymbolicPlan,
+)
+from tamp_runtime.qos import LATCHED, RELIABLE, SENSOR_DATA
+from trajectory_msgs.msg import JointTrajectory
+
+from motion_node.node import MotionNode
+from motion_node.robot import PANDA
+
+Array = NDArray[np.float64]
+
+NAMES = PANDA.arm_joints + PANDA.finger_joints
+HOME = np.array([*PANDA.home, 0.04, 0.04])
+EDGE = 0.045
+COLORS = ("red", "green", "blue", "yellow", "purple")
+ENDS = (MotionStatus.SUCCEEDED, MotionStatus.CANCELLED, MotionStatus.FAILED)
+
+
+class FakeArm(Node):
+    """Follows every trajectory exactly, ``speed`` times faster than the wall clock.
+
+    Faults are switched on by setting the attributes.
+    """
+
+    def __init__(self, describe: bool = True, **kwargs: Any) -> None:
+        super().__init__("fake_arm", **kwargs)
+        self.speed = 6.0
+        self.silent = False  # publishes no joint states
+        self.deaf = False  # ignores trajectories
+        self.stuck = False  # stays where it is
+        self.frozen_clock = False  # stamps stand still
+        self.block = EDGE  # what the fingers close on [m]; 0: nothing
+        self.trajectories: list[JointTrajectory] = []
+        self._lock = threading.Lock()
+        self._positions = HOME.copy()
+        self._spline: CubicHermiteSpline | None = None
+        self._began = 0.0
+        self._time = 100.0
+        self._last = time.monotonic()
+        self._states = self.create_publisher(JointState, "joint_states", SENSOR_DATA)
+        self._description = self.create_publisher(String, "robot_description", LATCHED)
+        self.create_subscription(JointTrajectory, "joint_trajectory", self._follow, RELIABLE)
+        self.create_timer(0.004, self._tick)
+        if describe:
+            self.describe()
+
+    def describe(self, text: str | None = None) -> None:
+        """Publishes the robot description."""
+        path = Path(pybullet_data.getDataPath()) / "franka_panda" / "panda.urdf"
+        self._description.publish(String(data=text or path.read_text(encoding="utf-8")))
+
+    @property
+    def positions(self) -> Array:
+        """Where the joints are, shape (9,)."""
+        with self._lock:
+            return self._positions.copy()
+
+    def _follow(self, message: JointTrajectory) -> None:
+        self.trajectories.append(message)
+        if self.deaf:
+            return
+        times = np.array(
+            [p.time_from_start.sec + 1e-9 * p.time_from_start.nanosec for p in message.points]
+        )
+        order = [list(message.joint_names).index(name) for name in NAMES]
+        positions = np.array([p.positions for p in message.points])[:, order]
+        velocities = np.array([p.velocities for p in message.points])[:, order]
+        with self._lock:
+            jump = np.abs(positions[0] - self._positions)[:7].max()
+            assert jump < 0.3, f"the trajectory starts {jump:.2f} rad from here"
+            self._spline = CubicHermiteSpline(times, positions, velocities)
+            self._began = self._time
+
+    def _tick(self) -> None:
+        with self._lock:
+            now = time.monotonic()
+            # A machine that is busy elsewhere makes this arm slower, not jump.
+            if not self.frozen_clock:
+                self._time += min(now - self._last, 0.02) * self.speed
+            self._last = now
+            if self._spline is not None and not self.stuck:
+                at = np.clip(self._time - self._began, 0.0, self._spline.x[-1])
+                self._positions = np.array(self._spline(at))
+                self._positions[7:] = np.maximum(self._positions[7:], self.block / 2)
+            positions, stamp = self._positions.tolist(), self._time
+        if self.silent or not self.context.ok():
+            return
+        header = Header()
+        header.stamp.sec, header.stamp.nanosec = int(stamp), int(stamp % 1 * 1e9)
+        self._states.publish(JointState(header=header, name=list(NAMES), position=positions))
+
+
+class FakePlanner(Node):
+    """Publishes plans and keeps the statuses."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("fake_planner", **kwargs)
+        self.statuses: list[MotionStatus] = []
+        self._plans = self.create_publisher(SymbolicPlan, "symbolic_plan", LATCHED)
+        self.create_subscription(MotionStatus, "motion_status", self.statuses.append, RELIABLE)
+
+    def ask(self, plan: SymbolicPlan) -> None:
+        plan.header.stamp = self.get_clock().now().to_msg()
+        self._plans.publish(plan)
+
+    def stop(self, plan_id: str) -> None:
+        self.ask(SymbolicPlan(plan_id=plan_id))
+
+    def of(self, plan_id: str) -> list[MotionStatus]:
+        """The statuses of a plan so far."""
+        return [status for status in list(self.statuses) if status.plan_id == plan_id]
+
+    def end(self, plan_id: str) -> MotionStatus | None:
+        """The status that ended a plan."""
+        return next((status for status in self.of(plan_id) if status.state in ENDS), None)
+
+
+class Bench:
+    """Arm and planner in one context, and the motion node when it is started.
+
+    Keyword arguments are faults of the arm.
+    """
+
+    def __init__(self, ros: Any, describe: bool = True, **faults: Any) -> None:
+        self.ros = ros
+        self.arm = ros.add(FakeArm(describe=describe, context=ros.context))
+        for name, value in faults.items():
+            setattr(self.arm, name, value)
+        self.planner = ros.add(FakePlanner(context=ros.context))
+
+    def start(self, **parameters: Any) -> MotionNode:
+        overrides = [Parameter(name, value=value) for name, value in parameters.items()]
+        node: MotionNode = self.ros.add(
+            MotionNode(context=self.ros.context, parameter_overrides=overrides)
+        )
+        self.ros.wait_until(
+            lambda: (
+                node.count_subscribers("joint_trajectory")
+                and node.count_subscribers("motion_status")
+                and self.planner.count_subscribers("symbolic_plan")
+            ),
+            what="discovery",
+        )
+        return node
+
+    def wait(self, condition: Callable[[], Any], what: str, timeout: float = 40.0) -> None:
+        self.ros.wait_until(condition, timeout, what)
+
+    def end(self, plan_id: str, timeout: float = 60.0) -> MotionStatus:
+        self.wait(lambda: self.planner.end(plan_id), f"the end of {plan_id}", timeout)
+        end = self.planner.end(plan_id)
+        assert end is not None
+        return end
+
+    def wait_for_phase(self, plan_id: str, phase: str, move: int) -> None:
+        self.wait(
+            lambda: any(
+                (status.phase, status.move, status.state) == (phase, move, MotionStatus.EXECUTING)
+                for status in self.planner.of(plan_id)
+            ),
+            f"{phase} of move {move}",
+        )
+
+    def wait_for_idle(self) -> None:
+        self.wait(
+            lambda: any(status.state == MotionStatus.IDLE for status in self.planner.statuses),
+            "IDLE",
+        )
+
+
+def scene_message(heights: tuple[int, ...] = (2, 1, 0)) -> SceneGraph:
+    """Towers of boxes on three places; the first colours stand on the left, from the bottom."""
+    message = SceneGraph()
+    colors = iter(COLORS)
+    for index, (count, y) in enumerate(zip(heights, (-0.15, 0.0, 0.15))):
+        base = Base(index=index)
+        base.position.x, base.position.y = 0.5, y
+        message.bases.append(base)
+        below = f"stack{index}"
+        for level in range(count):
+            color = next(colors)
+            item = SceneObject(name=f"{color}_box", color=color, shape="box")
+            item.pose.position.x, item.pose.position.y = 0.5, y
+            item.pose.position.z = (level + 0.5) * EDGE
+            item.size.x = item.size.y = item.size.z = EDGE
+            message.objects.append(item)
+            message.relations.append(
+                Relation(subject=item.name, predicate=Relation.UP, object=below)
+            )
+            below = item.name
+    return message
+
+
+def plan_message(
+    plan_id: str, *moves: tuple[int, int], heights: tuple[int, ...] = (2, 1, 0)
+) -> SymbolicPlan:
+    """A plan of moves (p, q) that names no blocks."""
+    return SymbolicPlan(
+        plan_id=plan_id,
+        initial=scene_message(heights),
+        moves=[Move(source=p, target=q) for p, q in moves],
+    )
