@@ -36,12 +36,6 @@ def test_a_world_point_to_the_right_and_above_is_right_and_above_in_the_image() 
     assert right > u and above < v
 
 
-def test_unknown_depth_gives_no_point() -> None:
-    depth = np.array([[0.0, np.nan, 1.0, -1.0, np.inf]])
-    known = np.isfinite(CAMERA.points_world(depth)).all(-1)
-    assert known.tolist() == [[False, False, True, False, False]]
-
-
 def test_what_is_behind_the_camera_has_no_pixel() -> None:
     assert np.isnan(CAMERA.project([3.0, 0.0, 0.4])).all()
 
@@ -53,11 +47,6 @@ def test_the_middle_of_an_image_cut_into_halves_stays_the_same_direction(
     # Pixel p of the large image covers the corner positions p - 1/2 to p + 1/2.
     half = CAMERA.resized(128, 128)
     assert (half.project(point) + 0.5) * 2.0 == pytest.approx(CAMERA.project(point) + 0.5, abs=1e-9)
-
-
-def test_a_cropped_image_has_the_same_rays() -> None:
-    crop = CAMERA.cropped(40, 30, 50, 60)
-    assert crop.rays_world([5.0, 6.0]) == pytest.approx(CAMERA.rays_world([45.0, 36.0]))
 
 
 def test_an_image_with_other_proportions_is_refused() -> None:

@@ -38,7 +38,7 @@ def test_what_is_saved_is_loaded(tmp_path: Path, backbone: str) -> None:
     image, default = torch.rand(2, 3, 128, 128), torch.rand(2, 1, 128, 128)
     with torch.inference_mode():
         for ours, theirs in zip(module(image, default), loaded(image, default)):
-            assert torch.equal(ours, theirs)
+            assert torch.allclose(ours, theirs, atol=1e-4)
 
 
 def refused(path: Path) -> str:

@@ -98,23 +98,63 @@ def measure_block(mask: Mask, depth: NDArray[np.floating], camera: PinholeCamera
     rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))
     if len(rows) == 0:
         raise BadImageError("it has no pixels")
-    # One pixel around the block, where the image has one: normals need neighbours.
-    top, left = max(rows[0] - 1, 0), max(columns[0] - 1, 0)
-    crop = np.s_[top : rows[-1] + 2, left : columns[-1] + 2]
-    mask = mask[crop]
-    camera = camera.cropped(int(left), int(top), mask.shape[1], mask.shape[0])
-    points_world = camera.points_world(depth[crop])
-    valid = mask & np.isfinite(points_world[..., 0])
-    share = np.count_nonzero(valid) / np.count_nonzero(mask)
-    if share < MIN_DEPTH_SHARE or np.count_nonzero(valid) < 3 * MIN_FACE_POINTS:
+    view = _View.around(mask, depth, camera, rows, columns)
+    valid = view.mask & np.isfinite(view.points[..., 0])
+    known = np.count_nonzero(valid)
+    share = known / np.count_nonzero(view.mask)
+    if share < MIN_DEPTH_SHARE or known < 3 * MIN_FACE_POINTS:
         raise BadImageError(f"only {share:.0%} of its pixels have depth")
-    points = points_world[valid]
-    normals = surface_normals(points_world, camera.position_world)[valid]
+    points = view.points[valid]
+    normals = surface_normals(view.points, view.origin)[valid]
     yaw, front, tilt = _front_plane(points, normals)
-    box = _measure_box(mask, points_world, camera, yaw, front, tilt)
+    box = _measure_box(view, yaw, front, tilt)
     if _box_residual(box, points) <= FLATNESS:
         return box
-    return _measure_round(mask, points_world, normals, camera) or box
+    return _measure_round(view, points, normals) or box
+
+
+@dataclass(frozen=True)
+class _View:
+    """The part of the image around a block, with one pixel more on every side.
+
+    Attributes:
+        mask: shape (h, w).
+        rays: directions of the pixels in world, also of those outside the image, shape (h, w, 3).
+        points: in world, NaN without depth, shape (h, w, 3) [m].
+        origin: the camera's centre in world, shape (3,) [m].
+    """
+
+    mask: Mask
+    rays: Array
+    points: Array
+    origin: Array
+
+    @classmethod
+    def around(
+        cls,
+        mask: Mask,
+        depth: NDArray[np.floating],
+        camera: PinholeCamera,
+        rows: NDArray[np.intp],
+        columns: NDArray[np.intp],
+    ) -> _View:
+        """``rows`` and ``columns`` are those that show the block, in order."""
+        top, bottom, left, right = rows[0] - 1, rows[-1] + 2, columns[0] - 1, columns[-1] + 2
+        u, v = np.meshgrid(np.arange(left, right), np.arange(top, bottom))
+        rays = camera.rays_world(np.stack([u, v], axis=-1))
+        height, width = mask.shape
+        inside = np.s_[max(top, 0) : min(bottom, height), max(left, 0) : min(right, width)]
+        shifted = np.s_[
+            inside[0].start - top : inside[0].stop - top,
+            inside[1].start - left : inside[1].stop - left,
+        ]
+        part = np.zeros(u.shape, bool)
+        part[shifted] = mask[inside]
+        distance = np.full(u.shape, np.nan)
+        distance[shifted] = depth[inside]
+        distance[~(distance > 0.0) | np.isinf(distance)] = np.nan
+        origin = camera.position_world
+        return cls(part, rays, origin + rays * distance[..., None], origin)
 
 
 def _front_plane(points: Array, normals: Array) -> tuple[float, float, float]:
@@ -156,10 +196,8 @@ def _slopes(x: Array, y: Array, z: Array) -> tuple[float, float]:
     return float((xy * zz - xz * yz) / determinant), float((xz * yy - xy * yz) / determinant)
 
 
-def _measure_box(
-    mask: Mask, points_world: Array, camera: PinholeCamera, yaw: float, front: float, tilt: float
-) -> BlockSurface:
-    in_frame = points_world @ block_frame(yaw)
+def _measure_box(view: _View, yaw: float, front: float, tilt: float) -> BlockSurface:
+    mask, in_frame = view.mask, view.points @ block_frame(yaw)
     with np.errstate(invalid="ignore"):
         behind = mask & (in_frame[..., 0] < front - SURFACE_TOLERANCE)
     unknown = mask & np.isnan(in_frame[..., 0])
@@ -167,7 +205,7 @@ def _measure_box(
         near_behind = cv2.boxFilter(behind.astype(np.float32), -1, (3, 3))
         near_front = cv2.boxFilter((mask & ~behind & ~unknown).astype(np.float32), -1, (3, 3))
         behind |= unknown & (near_behind > near_front)
-    left, right, bottom, top = _edges(mask & ~behind, camera, yaw, front)
+    left, right, bottom, top = _edges(mask & ~behind, view, yaw, front)
     rest = in_frame[behind & ~unknown]
     inside = (rest[:, 1] > left.high + SURFACE_TOLERANCE) & (
         rest[:, 1] < right.low - SURFACE_TOLERANCE
@@ -191,25 +229,21 @@ def _face_offset(offsets: Array, edge: Interval) -> Interval | None:
 
 
 def _edges(
-    face: Mask, camera: PinholeCamera, yaw: float, front: float
+    face: Mask, view: _View, yaw: float, front: float
 ) -> tuple[Interval, Interval, Interval, Interval]:
     """Left, right, bottom and top edge of the pixels of an upright plane, in the block's frame.
 
     Args:
-        face: the pixels, shape (height, width).
+        face: the pixels, shape (h, w) of the view.
         yaw, front: the plane.
     """
-    rows, columns = np.flatnonzero(face.any(1)), np.flatnonzero(face.any(0))
-    if len(rows) == 0:
+    if not face.any():
         unknown = Interval(np.nan, np.nan)
         return unknown, unknown, unknown, unknown
-    # One pixel more on every side, also outside the image: rays are known there as well.
-    v, u = np.arange(rows[0] - 1, rows[-1] + 2), np.arange(columns[0] - 1, columns[-1] + 2)
-    crop = np.pad(face[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1], 1)
-    rays = camera.rays_world(np.stack(np.meshgrid(u, v), axis=-1)) @ block_frame(yaw)
-    origin = camera.position_world @ block_frame(yaw)
-    points = origin + rays * ((front - origin[0]) / rays[..., :1])
-    y, z = points[..., 1], points[..., 2]
+    rays, origin = view.rays @ block_frame(yaw), view.origin @ block_frame(yaw)
+    distance = (front - origin[0]) / rays[..., 0]
+    y, z = origin[1] + rays[..., 1] * distance, origin[2] + rays[..., 2] * distance
+    crop = face
     if y[0, -1] < y[0, 0]:
         y, z, crop = y[:, ::-1], z[:, ::-1], crop[:, ::-1]
     used = np.flatnonzero(crop.any(1))
@@ -237,14 +271,12 @@ def _box_residual(box: BlockSurface, points: Array) -> float:
     """How far the points are from the nearest face, at the 80th percentile [m]."""
     x, y, z = (points @ block_frame(box.yaw)).T
     offsets = [x - box.front, y - box.left.middle, y - box.right.middle, z - box.top.middle]
-    return float(np.quantile(np.abs(offsets).min(axis=0), 0.8))
+    nearest = np.abs(offsets).min(axis=0)
+    return float(np.partition(nearest, int(0.8 * len(nearest)))[int(0.8 * len(nearest))])
 
 
-def _measure_round(
-    mask: Mask, points_world: Array, normals: Array, camera: PinholeCamera
-) -> BlockSurface | None:
+def _measure_round(view: _View, points: Array, normals: Array) -> BlockSurface | None:
     """The block as a sphere or an upright cylinder, whichever fits better; None if neither does."""
-    points = points_world[mask & np.isfinite(points_world[..., 0])]
     centre, radius, sphere_residual = _fit_ball(points)
     side = points[np.isfinite(normals[:, 0]) & (np.abs(normals[:, 2]) < 0.4)]
     axis, axis_radius, axis_residual = _fit_ball(side[:, :2])
@@ -257,7 +289,7 @@ def _measure_round(
         return BlockSurface(SPHERE, 0.0, x + radius, left, right, low, high)
     x, y = axis
     # Near its nearest line a cylinder is like the front of a box.
-    strip = _measure_box(mask, points_world, camera, 0.0, x + axis_radius, 0.0)
+    strip = _measure_box(view, 0.0, x + axis_radius, 0.0)
     left = Interval(y - axis_radius, y - axis_radius)
     right = Interval(y + axis_radius, y + axis_radius)
     return BlockSurface(CYLINDER, 0.0, strip.front, left, right, strip.bottom, strip.top)

@@ -66,13 +66,6 @@ class PinholeCamera:
         k[1, 2] += 0.5 * y - 0.5
         return PinholeCamera(k, self.world_from_optical, width, height)
 
-    def cropped(self, left: int, top: int, width: int, height: int) -> PinholeCamera:
-        """The camera whose image is a part of this one's, which may reach beyond it [px]."""
-        k = self.intrinsics.copy()
-        k[0, 2] -= left
-        k[1, 2] -= top
-        return PinholeCamera(k, self.world_from_optical, width, height)
-
     def project(self, points_world: ArrayLike) -> Array:
         """Pixels (u, v) of points, shape (..., 3) [m] -> (..., 2) [px]; NaN behind the camera."""
         points = np.asarray(points_world, dtype=np.float64) - self.position_world
@@ -94,14 +87,3 @@ class PinholeCamera:
         y = (pixels[..., 1] - k[1, 2]) / k[1, 1]
         optical = np.stack([x, y, np.ones_like(x)], axis=-1)
         return optical @ self.world_from_optical[:3, :3].T
-
-    def points_world(self, depth: NDArray[np.floating]) -> Array:
-        """A point for every pixel of a depth image, (height, width) [m] -> (height, width, 3) [m].
-
-        NaN where the depth is zero, negative or not finite.
-        """
-        rows, columns = np.indices(depth.shape)
-        rays = self.rays_world(np.stack([columns, rows], axis=-1))
-        valid = np.isfinite(depth) & (depth > 0)
-        distance = np.where(valid, depth, np.nan).astype(np.float64)
-        return self.position_world + rays * distance[..., None]

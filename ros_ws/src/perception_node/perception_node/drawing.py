@@ -18,6 +18,8 @@ from .status import Status
 DRAWING_WIDTH: Final = 384
 
 _FONT: Final = cv2.FONT_HERSHEY_SIMPLEX
+_FONT_SCALE: Final = 0.38
+_HALO: Final = (255, 255, 255)
 _CONFIDENT: Final = (20, 130, 40)
 _DOUBT: Final = (200, 40, 30)
 
@@ -88,8 +90,13 @@ def _text(
     position: tuple[int, int],
     color: tuple[int, int, int] = (20, 20, 20),
 ) -> None:
-    cv2.putText(canvas, text, position, _FONT, 0.38, (255, 255, 255), 3, cv2.LINE_AA)
-    cv2.putText(canvas, text, position, _FONT, 0.38, color, 1, cv2.LINE_AA)
+    """Text with a halo, its lower left corner at a position, but not beyond the right border."""
+    (width, _), _ = cv2.getTextSize(text, _FONT, _FONT_SCALE, 1)
+    x, y = max(min(position[0], canvas.shape[1] - width - 2), 1), position[1]
+    for right, down in ((-1, 0), (1, 0), (0, -1), (0, 1)):
+        origin = (x + right, y + down)
+        cv2.putText(canvas, text, origin, _FONT, _FONT_SCALE, _HALO, 1, cv2.LINE_AA)
+    cv2.putText(canvas, text, (x, y), _FONT, _FONT_SCALE, color, 1, cv2.LINE_AA)
 
 
 def _wrapped(text: str, width: int) -> list[str]:

@@ -8,17 +8,27 @@ import torch
 from numpy.typing import NDArray
 
 from .grid_sampler import sample
-from .masks import ObjectImages
+from .masks import ObjectImages, largest_part
 from .visual_module import Coordinates, intersection_over_union
 
 
 class MaskCentroid:
-    """Finds coordinates without learning; stands where the visual module stands."""
+    """Finds coordinates without learning; stands where the visual module stands.
+
+    Args:
+        largest_part_only: leave out parts of the mask that are detached from its largest part.
+    """
+
+    def __init__(self, largest_part_only: bool = False) -> None:
+        self.largest_part_only = largest_part_only
 
     def locate(self, objects: ObjectImages) -> Coordinates:
         """Coordinates of all objects of a scene: the centroids of their masks."""
         size = objects.coverage.shape[-1]
-        centroids = _centroids(objects.coverage)
+        coverage = objects.coverage
+        if self.largest_part_only:
+            coverage = coverage * np.array([largest_part(mask > 0) for mask in coverage])
+        centroids = _centroids(coverage)
         moved = centroids - _centroids(objects.default_coverage)
         # With a factor of 2, φ is the translation as a part of the image's side.
         reconstructed = sample(

@@ -16,6 +16,8 @@ IMAGE_SIZE: Final = 128
 #: Labels with fewer pixels than this part of the image are specks, not blocks.
 MIN_AREA: Final = 3e-4
 
+_CRACK: Final = np.ones((3, 3), np.uint8)
+
 
 @dataclass(frozen=True)
 class ObjectImages:
@@ -50,13 +52,22 @@ def object_labels(labels: NDArray[np.integer]) -> NDArray[np.intp]:
 
 
 def largest_part(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The mask without detached specks: its largest part, after one-pixel cracks are bridged."""
-    closed = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
+    """The mask without detached specks: its largest part, after one-pixel cracks are bridged.
+
+    The same array where there is nothing to leave out.
+    """
+    rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))
+    if len(rows) == 0:
+        return mask
+    box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    closed = cv2.morphologyEx(mask[box].astype(np.uint8), cv2.MORPH_CLOSE, _CRACK)
     count, parts, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8)
     if count <= 2:
         return mask
     largest = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
-    return mask & (parts == largest)
+    part = np.zeros_like(mask)
+    part[box] = mask[box] & (parts == largest)
+    return part
 
 
 def object_images(
@@ -74,8 +85,8 @@ def object_images(
     """
     found = object_labels(labels)
     rgb, labels, source, target = _aligned(rgb, labels, size)
-    images = np.zeros((len(found), size, size, 3), np.float32)
-    coverage = np.zeros(images.shape[:3], np.float32)
+    images = np.zeros((len(found), 3, size, size), np.float32)
+    coverage = np.zeros((len(found), size, size), np.float32)
     default_images, default_coverage = np.zeros_like(images), np.zeros_like(coverage)
     crop_sizes = np.zeros((len(found), 2), np.intp)
     for index, label in enumerate(found):
@@ -89,21 +100,21 @@ def object_images(
         # Rows count from the lower edge, the origin of φ.
         low = size - (len(labels) // source - bottom) * target
         box = np.s_[low - scaled_size[1] : low, left * target : left * target + scaled_size[0]]
-        images[index][box], coverage[index][box] = image, part
+        images[(index, slice(None), *box)], coverage[index][box] = image.transpose(2, 0, 1), part
         clean = largest_part(mask)
         if clean is not mask:
             image, part = _scaled(pixels, clean, scaled_size)
         rows, columns = np.flatnonzero(part.any(1)), np.flatnonzero(part.any(0))
         width, height = columns[-1] - columns[0] + 1, rows[-1] - rows[0] + 1
         tight = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-        default_images[index, size - height :, :width] = image[tight]
+        default_images[index, :, size - height :, :width] = image[tight].transpose(2, 0, 1)
         default_coverage[index, size - height :, :width] = part[tight]
         crop_sizes[index] = width, height
     return ObjectImages(
         labels=found,
-        images=np.ascontiguousarray(images.transpose(0, 3, 1, 2)),
+        images=images,
         coverage=coverage,
-        default_images=np.ascontiguousarray(default_images.transpose(0, 3, 1, 2)),
+        default_images=default_images,
         default_coverage=default_coverage,
         crop_sizes=crop_sizes,
     )

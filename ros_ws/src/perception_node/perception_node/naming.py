@@ -34,7 +34,8 @@ def mean_colors(rgb: NDArray[np.uint8], masks: Sequence[NDArray[np.bool_]]) -> A
     Returns:
         sRGB in 0..1, shape (N, 3).
     """
-    return np.array([np.median(rgb[mask], axis=0) for mask in masks]).reshape(-1, 3) / 255.0
+    medians = [np.sort(rgb[mask], axis=0)[np.count_nonzero(mask) // 2] for mask in masks]
+    return np.array(medians).reshape(-1, 3) / 255.0
 
 
 def color_names(colors: Array) -> list[str]:

@@ -41,6 +41,13 @@ class PlaceVolumes:
             (2.0 * self.half_width, 2.0 * self.half_width, self.height),
         )
 
+    def greatest_depth(self, camera: PinholeCamera) -> float:
+        """Depth along the optical axis that no point of the columns exceeds [m]."""
+        forward = camera.world_from_optical[:3, 2]
+        feet = (self.positions_world - camera.position_world) @ forward
+        aside = self.half_width * (abs(forward[0]) + abs(forward[1]))
+        return float(feet.max() + aside + max(self.height * forward[2], 0.0))
+
     def hides(self, points_world: Array, camera: PinholeCamera) -> NDArray[np.bool_]:
         """Whether points are inside the slab that holds the columns, or between it and the camera.
 
@@ -102,7 +109,10 @@ def hidden_pixels(
     Returns:
         Shape (height, width).
     """
-    rows, columns = np.nonzero(region & (labels == 0) & np.isfinite(depth) & (depth > 0))
+    # What is deeper than every column is behind them: most of the image, without any geometry.
+    with np.errstate(invalid="ignore"):
+        near = (depth > 0) & (depth < volumes.greatest_depth(camera))
+    rows, columns = np.nonzero(region & (labels == 0) & near)
     rays = camera.rays_world(np.stack([columns, rows], axis=-1))
     points = camera.position_world + rays * depth[rows, columns, None]
     hidden = np.zeros(labels.shape, bool)

@@ -10,10 +10,11 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
+from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from .coordinate_regressor import DEFAULT_BACKBONE, make_regressor
 from .grid_sampler import pixels_from_coordinates, sample
-from .masks import IMAGE_SIZE, ObjectImages
+from .masks import ObjectImages
 
 #: Factor of the matrix α; 2 lets φ in 0..1 reach the whole image, where the thesis has 1.6.
 TRANSLATION_FACTOR: Final = 2.0
@@ -63,13 +64,21 @@ class VisualModule(nn.Module):
         phi = self.regressor(images)
         return phi, sample(default, phi, self.translation_factor)
 
+    def for_inference(self) -> VisualModule:
+        """This module, made ready to be fast: it cannot be trained or saved any more."""
+        self.eval()
+        for block in self.modules():
+            if isinstance(block, nn.Sequential):
+                _fold_normalisation(block)
+        return self.to(memory_format=torch.channels_last)
+
     @torch.inference_mode()
     def locate(self, objects: ObjectImages) -> Coordinates:
         """Coordinates of all objects of a scene, in one batch. Call ``eval()`` first."""
         if len(objects) == 0:
             empty = np.zeros((0, 2))
             return Coordinates(empty, empty, empty, np.zeros(0))
-        images = torch.from_numpy(objects.images)
+        images = torch.from_numpy(objects.images).contiguous(memory_format=torch.channels_last)
         default = torch.from_numpy(objects.default_coverage[:, None])
         phi, reconstructed = self(images, default)
         size = images.shape[-1]
@@ -101,9 +110,10 @@ def intersection_over_union(
     return np.minimum(first, second).sum(axes, dtype=np.float64) / np.maximum(union, 1e-9)
 
 
-def untrained(size: int = IMAGE_SIZE, backbone: str = DEFAULT_BACKBONE) -> VisualModule:
-    """A module with random weights in evaluation mode, warmed up; for tests and timing."""
-    module = VisualModule(backbone).eval()
-    with torch.inference_mode():
-        module(torch.zeros(1, 3, size, size), torch.zeros(1, 1, size, size))
-    return module
+def _fold_normalisation(block: nn.Sequential) -> None:
+    """Puts the scale and shift of batch normalisation into the convolution before it."""
+    for index in range(len(block) - 1):
+        first, second = block[index], block[index + 1]
+        if isinstance(first, nn.Conv2d) and isinstance(second, nn.BatchNorm2d):
+            block[index] = fuse_conv_bn_eval(first, second)
+            block[index + 1] = nn.Identity()

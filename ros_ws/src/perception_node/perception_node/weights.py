@@ -61,7 +61,7 @@ def read_metadata(path: Path) -> dict[str, str]:
 
 
 def load_weights(path: Path = DEFAULT_WEIGHTS) -> VisualModule:
-    """A module in evaluation mode with the weights of a file.
+    """A module with the weights of a file, ready for inference only.
 
     Raises:
         WeightsError: if the file is missing, damaged, or was not made by :func:`save_weights`.
@@ -94,4 +94,4 @@ def load_weights(path: Path = DEFAULT_WEIGHTS) -> VisualModule:
             f"weights file {path} holds values that are not finite; {_RETRAIN}", path
         )
     module.load_state_dict(tensors)
-    return module.eval()
+    return module.for_inference()
