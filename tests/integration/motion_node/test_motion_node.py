@@ -213,6 +213,29 @@ def test_an_arm_that_gets_stuck_is_reported(bench: Bench) -> None:
     assert end.moves_done == 0
 
 
+def test_an_arm_that_obeys_again_goes_home_with_its_empty_hand(bench: Bench) -> None:
+    bench.start(max_lag=1.0)
+    bench.planner.ask(plan_message("a", (0, 1)))
+    bench.wait(lambda: np.abs(bench.arm.positions - HOME).max() > 0.2, "a moving arm")
+    bench.arm.stuck = True
+    bench.wait(lambda: len(bench.arm.trajectories) > 1, "the command to hold")
+    bench.arm.stuck = False
+    end = bench.end("a")
+    assert (end.state, end.reason) == (MotionStatus.FAILED, MotionStatus.TRACKING_LOST)
+    assert "the arm is home" in end.message
+    np.testing.assert_allclose(bench.arm.positions, HOME, atol=0.02)
+
+
+def test_joint_states_of_long_ago_do_not_count(bench: Bench) -> None:
+    bench.start(joint_state_timeout=0.5)
+    bench.planner.ask(plan_message("a", (0, 1)))
+    bench.end("a")
+    bench.arm.silent = True
+    time.sleep(0.7)
+    bench.planner.ask(plan_message("b", (0, 1)))
+    assert bench.end("b").reason == MotionStatus.NO_JOINT_STATES
+
+
 def test_fingers_that_close_on_nothing_send_the_arm_home(bench: Bench) -> None:
     bench.start()
     bench.arm.block = 0.0

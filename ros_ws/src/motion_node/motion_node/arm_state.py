@@ -54,13 +54,10 @@ class ArmStateBox:
             self._newest = ArmState(stamp, time.monotonic(), positions, resting)
             self._changed.notify_all()
 
-    def newest(self, max_age: float) -> ArmState | None:
-        """The newest state if it arrived within ``max_age`` seconds, else None."""
+    def newest(self) -> ArmState | None:
+        """The newest state, however old; None if there has been none."""
         with self._changed:
-            state = self._newest
-        if state is None or time.monotonic() - state.received > max_age:
-            return None
-        return state
+            return self._newest
 
     def wait(self, after: ArmState | None, timeout: float) -> ArmState | None:
         """The first state that differs from ``after``, or None after ``timeout`` seconds."""

@@ -107,12 +107,15 @@ class Follower:
         """
         state = self._arm.wait(after, self.settings.joint_state_timeout)
         if state is None:
-            raise ExecutionError(
-                Reason.NO_JOINT_STATES,
-                f"no joint_states for {self.settings.joint_state_timeout:g} s; is the arm's "
-                "driver (or sim_node) running?",
-            )
+            raise self._silence()
         return state
+
+    def _silence(self) -> ExecutionError:
+        return ExecutionError(
+            Reason.NO_JOINT_STATES,
+            f"no joint_states for {self.settings.joint_state_timeout:g} s; is the arm's driver (or "
+            "sim_node) running?",
+        )
 
     def wait_for_rest(self, stopped: Callable[[], bool]) -> ArmState | None:
         """The newest state as soon as the arm stands still; None if ``stopped`` says so.
@@ -125,20 +128,21 @@ class Follower:
         """
         deadline = time.monotonic() + self.settings.rest_timeout
         heard = time.monotonic()
-        state = self._arm.newest(self.settings.joint_state_timeout)
+        state = self._arm.newest()
+        fresh = state is not None and heard - state.received < self.settings.joint_state_timeout
         while not stopped():
-            now = time.monotonic()
-            if state is not None and state.resting >= self.settings.rest_seconds:
+            if state is not None and fresh and state.resting >= self.settings.rest_seconds:
                 return state
+            now = time.monotonic()
             if now > deadline:
                 raise ExecutionError(
                     Reason.TIMEOUT, "the arm does not come to rest, so no trajectory can start"
                 )
             news = self._arm.wait(state, 0.1)
             if news is not None:
-                state, heard = news, now
+                state, heard, fresh = news, now, True
             elif now - heard > self.settings.joint_state_timeout:
-                return self.next_state(state)
+                raise self._silence()
         return None
 
     def follow(
