@@ -117,17 +117,18 @@ def make_rows(results: list[dict], blocks: int) -> list[Row]:
             Row(name, f"{timing}, median", median(values), "s", n, (min(values), max(values)),
                 required=required)
         )  # fmt: skip
-    six = [r["timing_s"]["motion"] for r in results if r["moves_planned"] == 6 and not r["replans"]]
-    if six:
+    seconds = [result["timing_s"]["motion"] for result in long if not result["replans"]]
+    if seconds:
         rows.append(
             Row(
-                f"{blocks} blocks, plans of 6 moves",
+                f"{blocks} blocks, plans of 6 and more moves",
                 "motion optimisation, median",
-                median(six),
+                median(seconds),
                 "s",
-                len(six),
-                (min(six), max(six)),
+                len(seconds),
+                (min(seconds), max(seconds)),
                 required="<= 1.5",
+                note="asked for plans of 6 moves; longer ones are harder",
             )
         )
     return rows
@@ -173,7 +174,7 @@ def main() -> int:
     }  # fmt: skip
     path = write_result(
         f"tasks_{options.blocks}",
-        f"make eval-tasks N={options.n} BLOCKS={options.blocks}",
+        f"make eval-tasks N={options.n} BLOCKS={options.blocks} RTF={options.real_time_factor:g}",
         rows,
         time.monotonic() - started,
         details,
