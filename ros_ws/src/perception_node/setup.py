@@ -17,7 +17,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "perception_node = perception_node.node:main",
+            "perception_node = perception_node.executable:main",
             "train_visual = perception_node.train_visual:main",
         ]
     },

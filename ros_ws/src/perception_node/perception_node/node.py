@@ -224,6 +224,6 @@ class PerceptionNode(Node):
             self._markers.publish(markers_from_graph(perceived.graph, header))
 
 
-def main() -> int:
-    """Entry point of ``ros2 run perception_node perception_node``."""
+def run() -> int:
+    """Runs the node until it is stopped; returns the process's exit code."""
     return run_node(PerceptionNode)
