@@ -9,6 +9,7 @@ from motion_scenes import scene
 
 from motion_node.errors import RobotDescriptionError
 from motion_node.kinematics import Kinematics
+from motion_node.optimiser import MotionOptimiser
 from motion_node.robot import PANDA
 
 
@@ -81,3 +82,8 @@ def test_an_unknown_link_is_named(urdf: str) -> None:
     with pytest.raises(RobotDescriptionError, match="'panda_elbow'") as caught:
         Kinematics(urdf, PANDA.arm_joints).pose_function("panda_elbow")
     assert caught.value.element == "panda_elbow"
+
+
+def test_an_arm_without_the_links_that_are_kept_clear_is_refused(urdf: str) -> None:
+    with pytest.raises(RobotDescriptionError, match="panda_link6"):
+        MotionOptimiser(urdf.replace('"panda_link6"', '"elbow"'))

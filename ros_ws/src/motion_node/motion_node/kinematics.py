@@ -150,10 +150,14 @@ class Kinematics:
                 cache[link] = self._pose_by_parent(link, q, pose)
             return cache[link]
 
+        self.check_links(links)
+        return {link: pose(link) for link in links}
+
+    def check_links(self, links: Sequence[str]) -> None:
+        """Raises RobotDescriptionError if a link does not exist."""
         for link in links:
             if link not in self.links:
                 raise RobotDescriptionError(f"the robot description has no link {link!r}", link)
-        return {link: pose(link) for link in links}
 
     def _pose_by_parent(self, link, q, pose):  # type: ignore[no-untyped-def]
         joint = self.by_child.get(link)

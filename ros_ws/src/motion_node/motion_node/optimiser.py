@@ -39,7 +39,7 @@ class Settings:
     phases: PhaseSettings = field(default_factory=PhaseSettings)
     path: PathSettings = field(default_factory=PathSettings)
     timing: TimingSettings = field(default_factory=TimingSettings)
-    squeeze: float = 0.006
+    squeeze: float = 0.01
     limit_margin: float = 0.05
 
 
@@ -80,6 +80,7 @@ class MotionOptimiser:
         self.robot = robot
         self.settings = settings or Settings()
         self.kinematics = Kinematics(description, robot.arm_joints)
+        self.kinematics.check_links([robot.hand_link, *(body.link for body in robot.bodies)])
         margin = self.settings.limit_margin
         self.lower = self.kinematics.lower + margin
         self.upper = self.kinematics.upper - margin
