@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageSequence
 
 from scene_graph import COLORS, Move
 from tamp_bringup.plan_picture import draw_plan
@@ -41,12 +41,16 @@ def frame(value: int) -> np.ndarray:
     return np.full((8, 8, 3), value, dtype=np.uint8)
 
 
+def frame_count(path: Path) -> int:
+    return sum(1 for _ in ImageSequence.Iterator(Image.open(path)))
+
+
 def test_an_animation_keeps_images_at_its_interval(tmp_path: Path) -> None:
     recording = Recording(interval=0.4)
     for index in range(20):
         recording.add(frame(index * 10), index * 0.1)
     assert recording.write_gif(tmp_path / "a.gif")
-    assert Image.open(tmp_path / "a.gif").n_frames == 5
+    assert frame_count(tmp_path / "a.gif") == 5
 
 
 def test_a_long_recording_stays_bounded(tmp_path: Path) -> None:
@@ -54,7 +58,7 @@ def test_a_long_recording_stays_bounded(tmp_path: Path) -> None:
     for index in range(1000):
         recording.add(frame(index % 250), index * 0.1)
     recording.write_gif(tmp_path / "a.gif")
-    assert 5 <= Image.open(tmp_path / "a.gif").n_frames <= 20
+    assert 5 <= frame_count(tmp_path / "a.gif") <= 20
 
 
 def test_nothing_recorded_is_nothing_written(tmp_path: Path) -> None:

@@ -100,4 +100,6 @@ def run_task(
 def goal_holds(goal: str, truth: SceneGraph) -> bool:
     """Whether the true state fulfils a goal text."""
     stacks = true_stacks(truth)
-    return bool(stacks) and resolve_goal(parse_goal(goal), truth.names).holds(stacks)
+    if not stacks:
+        return False
+    return resolve_goal(parse_goal(goal), truth.names).holds(stacks)
