@@ -16,7 +16,8 @@ on the safe side. The largest of the k gaps d_i is smoothed from below by
 
     (1/s) log(sum_i exp(s d_i)) - log(k)/s  <=  max_i d_i,
 
-whose gradient never vanishes, so a solver finds the way out of any overlap.
+whose gradient never vanishes, so a solver finds the way out of any overlap. The smallest gap of a
+body's spheres is smoothed from below likewise.
 """
 
 from __future__ import annotations
@@ -39,6 +40,8 @@ Array = NDArray[np.float64]
 
 #: Sharpness s of the smooth maximum [1/m].
 SHARPNESS: Final = 150.0
+#: Of the smooth minimum over the spheres of a body [1/m].
+SHARPNESS_OF_BODIES: Final = 400.0
 #: What the safe side costs at most, where one of four gaps dominates: log(4)/s [m].
 SMOOTHING: Final = float(np.log(4.0)) / SHARPNESS
 LEAN_ROWS: Final = 2
@@ -82,6 +85,11 @@ def _smooth_abs(value: ca.SX) -> ca.SX:
 def _smooth_max(values: list[ca.SX]) -> ca.SX:
     """From below; see the module."""
     return (ca.logsumexp(SHARPNESS * ca.vertcat(*values)) - np.log(len(values))) / SHARPNESS
+
+
+def _smooth_min(values: list[ca.SX]) -> ca.SX:
+    """From below."""
+    return -ca.logsumexp(-SHARPNESS_OF_BODIES * ca.vertcat(*values)) / SHARPNESS_OF_BODIES
 
 
 class _Hand:
@@ -167,22 +175,25 @@ class Features:
         columns = ca.reshape(parameters[: 5 * self.stacks], 5, self.stacks)
         half_x, half_y, bottom, floor, margin = ca.vertsplit(parameters[5 * self.stacks :])
         hand = _Hand(*self._poses[robot.hand_link], robot.hand_top, bottom, [half_x, half_y])
-        spheres = []
+        spheres: dict[str, list[tuple[ca.SX, float]]] = {}
         for body in robot.bodies:
             rotation, position = self._poses[body.link]
-            spheres.append((position + rotation @ ca.DM(body.center), body.radius))
+            center = position + rotation @ ca.DM(body.center)
+            spheres.setdefault(body.name, []).append((center, body.radius))
         rotation, _ = self._poses[robot.hand_link]
         rows = [rotation[0, 2], rotation[1, 2]]
         for column in ca.horzsplit(columns, 1):
             rows.append(hand.gap(column, floor) - margin)
-            rows += [_sphere_gap(*sphere, column) - margin for sphere in spheres]
+            for parts in spheres.values():
+                gaps = [_sphere_gap(*sphere, column) for sphere in parts]
+                rows.append(_smooth_min(gaps) - margin)
         rows.append(hand.height() - floor - margin)
         return _feature("path", self._q, parameters, ca.vertcat(*rows))
 
     def path_names(self, tool: Tool) -> list[str]:
         """The rows of ``path`` in words."""
         hand = f"hand with {tool.held}" if tool.held else "hand"
-        bodies = [hand, *(body.name for body in self.robot.bodies)]
+        bodies = [hand, *self._body_names]
         names = ["tilt of the hand"] * LEAN_ROWS
         for index in range(self.stacks):
             names += [f"clearance of {body} to {base_name(index)}" for body in bodies]
@@ -210,7 +221,12 @@ class Features:
     @property
     def tool_floor_row(self) -> int:
         """Row of ``path`` that holds the clearance of the hand to the table."""
-        return LEAN_ROWS + self.stacks * (1 + len(self.robot.bodies))
+        return LEAN_ROWS + self.stacks * (1 + len(self._body_names))
+
+    @property
+    def _body_names(self) -> list[str]:
+        """Of the links behind the hand, each once."""
+        return list(dict.fromkeys(body.name for body in self.robot.bodies))
 
     def switch_names(self, switch: Switch) -> list[str]:
         """The rows of ``switch`` in words."""

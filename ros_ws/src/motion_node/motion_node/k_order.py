@@ -35,7 +35,7 @@ Array = NDArray[np.float64]
 TOLERANCE = 1e-4
 
 #: Largest step of a joint at which sequential quadratic programming has converged [rad].
-STEP_TOLERANCE = 1e-2
+STEP_TOLERANCE = 2e-2
 #: Steps it may take, and how far a joint may move in the first of them [rad].
 MAX_STEPS = 20
 TRUST = 0.5
@@ -244,15 +244,14 @@ class KOrderProblem:
             return solution
         return self._finish(x, bounds, numbers, constant, "ipopt", *self._solve_ipopt(numbers))
 
-    def _solve_sqp(self, numbers: _Numbers) -> tuple[Array, int]:
+    def _solve_sqp(self, numbers: _Numbers) -> tuple[Array, Array, int]:
         z, step, trust = numbers.start, np.inf, TRUST
-        for iteration in range(MAX_STEPS):
+        for iteration in range(MAX_STEPS + 1):
             g, jacobian = self._jacobian(z, numbers.p)
             values = np.array(g).ravel()
-            if not np.isfinite(values).all():
-                return z, iteration
-            if step < STEP_TOLERANCE and numbers.excess(values).max() < TOLERANCE / 2:
-                return z, iteration
+            done = step < STEP_TOLERANCE and numbers.excess(values).max() < TOLERANCE / 2
+            if done or iteration == MAX_STEPS or not np.isfinite(values).all():
+                break
             result = self._quadratic(
                 h=self._hessian_sparse,
                 g=self._hessian @ z + numbers.linear,
@@ -263,16 +262,16 @@ class KOrderProblem:
                 ubx=np.minimum(numbers.upper_x - z, trust),
             )
             if not self._quadratic.stats()["success"]:
-                return z, iteration
+                break
             delta = np.array(result["x"]).ravel()
             # Without the constraints' curvature, steps can go to and fro; shorter ones settle.
             before, step = step, float(np.abs(delta).max())
             if step > before / 2:
                 trust = step / 2
             z = z + delta
-        return z, MAX_STEPS
+        return z, values, iteration
 
-    def _solve_ipopt(self, numbers: _Numbers) -> tuple[Array, int]:
+    def _solve_ipopt(self, numbers: _Numbers) -> tuple[Array, Array, int]:
         result = self._ipopt(
             x0=numbers.start,
             p=numbers.p,
@@ -281,7 +280,8 @@ class KOrderProblem:
             lbg=numbers.lower_g,
             ubg=numbers.upper_g,
         )
-        return np.array(result["x"]).ravel(), int(self._ipopt.stats()["iter_count"])
+        iterations = int(self._ipopt.stats()["iter_count"])
+        return np.array(result["x"]).ravel(), np.array(result["g"]).ravel(), iterations
 
     def _finish(
         self,
@@ -291,11 +291,12 @@ class KOrderProblem:
         constant: float,
         solver: str,
         z: Array,
+        values: Array,
         iterations: int,
     ) -> Solution:
         solved = np.array(x, dtype=float)
         solved[self.free] = z.reshape(-1, self.dimension)
-        excess = numbers.excess(np.array(self._jacobian(z, numbers.p)[0]).ravel())
+        excess = numbers.excess(values)
         ends = np.cumsum([item.lower.size for item in bounds])[:-1]
         parts = np.split(excess, ends)
         return Solution(

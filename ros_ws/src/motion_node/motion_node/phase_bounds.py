@@ -155,20 +155,21 @@ class PhaseBounds:
         tops = [column.top for column in self.phase.columns]
         hanging = self.phase.tool.bottom - self.features.robot.tcp_offset
         across = max(tops) + hanging + self._reserve + 0.01 + higher
-        knots, shares = [self.start_q], [0.0]
         share = 1.3 * settings.vertical / settings.steps
-        for end, q, when in (
-            (self.first, self.start_q, share),
-            (self.last, self.goal_q, 1 - share),
-        ):
+        ends = ((self.first, self.start_q, share), (self.last, self.goal_q, 1 - share))
+        points, yaws, near, shares = [], [], [], [0.0]
+        for end, q, when in ends:
             if end is None:
                 continue
-            _, yaw = self.features.hand_pose(q)
-            point = end.reference * (1 - inwards)
-            point[2] = max(across, end.height + end.lift)
-            knots.append(inverse.solve(point, np.array([yaw]), q)[0])
+            points.append(end.reference * (1 - inwards))
+            points[-1][2] = max(across, end.height + end.lift)
+            yaws.append(self.features.hand_pose(q)[1])
+            near.append(q)
             shares.append(when)
-        knots.append(self.goal_q)
+        between: list[Array] = []
+        if near:
+            between = list(inverse.solve(np.array(points), np.array(yaws), np.array(near)))
+        knots = [self.start_q, *between, self.goal_q]
         shares.append(1.0)
         at = np.linspace(0.0, 1.0, settings.steps + 1)
         return np.column_stack([np.interp(at, shares, column) for column in np.array(knots).T])

@@ -67,10 +67,8 @@ def shortest_duration(spline: CubicSpline, limits: JointLimits) -> float:
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(begin * end < 0, begin / (begin - end), 0.0)
     crossing = knots[:-1, None] + share * np.diff(knots)[:, None]
-    speeds = [np.abs(spline(knots, 1)).max(axis=0)]
-    for joint in range(at_knots.shape[1]):
-        speeds.append(np.abs(spline(crossing[:, joint], 1)).max(axis=0))
-    velocity = np.max(speeds, axis=0) / limits.velocity
+    speeds = np.abs(spline(np.concatenate([knots, crossing.ravel()]), 1)).max(axis=0)
+    velocity = speeds / limits.velocity
     acceleration = np.abs(at_knots).max(axis=0) / limits.acceleration
     return float(max(velocity.max(), np.sqrt(acceleration.max()), 0.05))
 
@@ -86,9 +84,10 @@ class _Points:
         self.velocities: list[Array] = []
         self.intervals: list[Interval] = []
 
-    def travel(self, path: PhasePath, duration: float, fingers: Array) -> None:
+    def travel(self, path: PhasePath, limits: JointLimits, fingers: Array) -> None:
         """The arm follows a path, the fingers stay; the end point is left to what follows."""
         spline = unit_spline(path.q)
+        duration = shortest_duration(spline, limits)
         intervals = len(path.q) - 1
         parts = max(1, int(np.ceil(duration / intervals / self.settings.point_seconds)))
         u = np.arange(intervals * parts) / (intervals * parts)
@@ -156,8 +155,7 @@ def time_paths(
         points.grip(first.phase, first.q[0], now, target, settings.open_seconds)
         now = target
     for path in paths:
-        duration = shortest_duration(unit_spline(path.q), scaled)
-        points.travel(path, duration, now)
+        points.travel(path, scaled, now)
         if path.phase.kind != HOME:
             target = np.full(2, path.phase.grip)
             closing = float(target[0]) < float(now[0])
