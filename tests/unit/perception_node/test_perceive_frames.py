@@ -67,7 +67,7 @@ def move_hand(world: World, position: tuple[float, float, float]) -> None:
         pybullet.resetJointState(world.robot, index, angle, 0.0, physicsClientId=world.client)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("blocks", [3, 6, 7])
 def test_the_graph_of_a_random_scene_is_right_and_confident(
     world: World, seed: int, blocks: int
@@ -82,9 +82,8 @@ def test_the_graph_of_a_random_scene_is_right_and_confident(
 
 
 def test_a_single_tower_of_seven_is_read(world: World) -> None:
-    layout: Stacks = ((), random_layout(3, 7)[0], ())
     names = [name for stack in random_layout(3, 7) for name in stack]
-    layout = ((), tuple(names), ())
+    layout: Stacks = ((), tuple(names), ())
     world.reset(layout)
     assert perceive(world).graph.stacks() == layout
 
@@ -163,7 +162,7 @@ def test_an_empty_table_has_no_objects(world: World) -> None:
 
 class TestTheArm:
     @pytest.mark.parametrize("place", [0, 1, 2])
-    @pytest.mark.parametrize("height", [0.12, 0.2, 0.3])
+    @pytest.mark.parametrize("height", [0.12, 0.3])
     def test_in_front_of_or_among_the_places_it_is_noticed(
         self, world: World, place: int, height: float
     ) -> None:
@@ -175,19 +174,18 @@ class TestTheArm:
         assert "not a block" in perceived.message
         assert perceived.graph.confidence < confidence
 
-    @pytest.mark.parametrize("seed", range(30))
+    @pytest.mark.parametrize("seed", range(5))
     def test_a_frame_in_which_it_hides_a_block_is_never_confident(
         self, world: World, seed: int
     ) -> None:
         rng = np.random.default_rng(seed)
-        layout = random_layout(seed, 6)
-        world.reset(layout, seed, settle_time=0.0)
+        world.reset(random_layout(seed, 6), seed, settle_time=0.0)
         clear = world.render().labels
-        position = rng.uniform((0.35, -0.25, 0.1), (0.75, 0.25, 0.4))
-        move_hand(world, (position[0], position[1], position[2]))
-        hidden = np.count_nonzero((clear > 0) & (world.render().labels != clear))
-        perceived = perceive(world)
-        assert hidden == 0 or perceived.status is not Status.CONFIDENT
+        for x, y, z in rng.uniform((0.35, -0.25, 0.1), (0.75, 0.25, 0.4), (6, 3)):
+            move_hand(world, (x, y, z))
+            frame = world.render()
+            hidden = np.count_nonzero((clear > 0) & (frame.labels != clear))
+            assert hidden == 0 or perceive(world, frame).status is not Status.CONFIDENT
 
     def test_behind_the_blocks_it_does_not_matter(self, world: World) -> None:
         world.reset(TOWERS)

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Training is self-supervised, learns, and goes on where it was stopped."""
 
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -110,6 +113,24 @@ def test_the_command_trains_and_goes_on(
     assert load_weights(tmp_path / "visual_module.safetensors").backbone == "pointing"
     assert main(arguments) == 0
     assert "going on from step 2 of 2" in capsys.readouterr().out
+
+
+def test_ctrl_c_stops_after_a_whole_step_and_saves(folder: Path, tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "perception_node.train_visual", "--data", str(folder)]
+    command += ["--run", str(tmp_path), "--threads", "1", "--no-bfloat16", "--steps", "100000"]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    assert process.stderr is not None
+    seen = ""
+    while "loss=" not in seen:
+        seen += process.stderr.read(1)
+        assert process.poll() is None, seen
+    process.send_signal(signal.SIGINT)
+    output, errors = process.communicate(timeout=120)
+    assert process.returncode == 130
+    assert "the same command goes on from there" in output and "Traceback" not in errors
+    trainer = Trainer(read_crops(folder), TrainingConfig(steps=100000))
+    trainer.resume(tmp_path / "checkpoint.pt")
+    assert trainer.step >= 1
 
 
 def test_the_command_says_what_is_missing(

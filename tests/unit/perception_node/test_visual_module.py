@@ -34,7 +34,7 @@ def locate(corners: list[tuple[int, int]]) -> Coordinates:
 anywhere = st.tuples(st.integers(4, 228), st.integers(4, 228))
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(st.lists(anywhere, min_size=1, max_size=4, unique=True))
 def test_corners_are_found_to_two_pixels(corners: list[tuple[int, int]]) -> None:
     rgb, labels = scene_of(corners)
@@ -49,7 +49,7 @@ def test_corners_are_found_to_two_pixels(corners: list[tuple[int, int]]) -> None
         assert located.iou[row] > 0.75
 
 
-@settings(max_examples=30)
+@settings(max_examples=15)
 @given(anywhere, anywhere)
 def test_moving_an_object_moves_its_coordinates_by_as_much(
     start: tuple[int, int], end: tuple[int, int]

@@ -18,7 +18,7 @@ depth            (N, h, w) f32      optional: depth [m]
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -93,8 +93,11 @@ def read_scenes(folder: Path) -> Iterator[Scene]:
             )
 
 
-def read_crops(folder: Path) -> ObjectCrops:
+def read_crops(folder: Path, on_shard: Callable[[], object] = lambda: None) -> ObjectCrops:
     """Cuts the objects out of every scene of a data set; reads no ground truth.
+
+    Args:
+        on_shard: called after each shard, to show progress.
 
     Raises:
         DatasetError: as :func:`read_scenes`, or if no usable object is in it.
@@ -109,6 +112,7 @@ def read_crops(folder: Path) -> ObjectCrops:
             sizes.append(objects.crop_sizes[fits])
             corners.append(_corners(objects.coverage[fits]))
             starts.append(starts[-1] + len(fits))
+        on_shard()
     if starts[-1] == 0:
         raise DatasetError(f"{folder} shows no objects of at most {CROP_SIZE} px")
     return ObjectCrops(

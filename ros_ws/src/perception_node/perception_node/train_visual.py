@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import shutil
+import signal
 import subprocess
 import sys
 from dataclasses import asdict, fields
@@ -20,7 +21,7 @@ import torch
 from tqdm import tqdm
 
 from .coordinate_regressor import BACKBONES
-from .dataset import read_crops
+from .dataset import read_crops, shard_paths
 from .errors import PerceptionError
 from .training import Trainer, TrainingConfig, bfloat16_helps
 from .weights import DEFAULT_WEIGHTS, save_weights
@@ -32,21 +33,16 @@ WEIGHTS = "visual_module.safetensors"
 def main(arguments: list[str] | None = None) -> int:
     """Exit code 0 when done, 130 when stopped by Ctrl-C, 2 when it cannot start."""
     options = _parse(arguments)
-    names = [field.name for field in fields(TrainingConfig)]
-    config = TrainingConfig(**{name: getattr(options, name) for name in names})
     torch.set_num_threads(options.threads)
     checkpoint = options.run / CHECKPOINT
     try:
-        crops = read_crops(options.data)
-        trainer = Trainer(crops, config)
-        if checkpoint.exists():
-            trainer.resume(checkpoint)
-            print(f"going on from step {trainer.step} of {config.steps} ({checkpoint})")
+        trainer = _trainer(options, checkpoint)
     except (PerceptionError, OSError, ValueError) as error:
         print(f"cannot train: {error}", file=sys.stderr)
         return 2
-    done = _train(trainer, checkpoint)
-    if not done:
+    except KeyboardInterrupt:
+        return 130
+    if not _train(trainer, checkpoint):
         print(f"stopped at step {trainer.step}; the same command goes on from there")
         return 130
     path = options.run / WEIGHTS
@@ -62,23 +58,40 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
+def _trainer(options: argparse.Namespace, checkpoint: Path) -> Trainer:
+    """A new run, or the one of the checkpoint."""
+    settings = {field.name: getattr(options, field.name) for field in fields(TrainingConfig)}
+    config = TrainingConfig(**settings)
+    with tqdm(total=len(shard_paths(options.data)), desc="reading", unit="shard") as progress:
+        crops = read_crops(options.data, on_shard=progress.update)
+    trainer = Trainer(crops, config)
+    if checkpoint.exists():
+        trainer.resume(checkpoint)
+        print(f"going on from step {trainer.step} of {config.steps} ({checkpoint})")
+    return trainer
+
+
 def _train(trainer: Trainer, checkpoint: Path) -> bool:
-    """Trains with a progress bar; whether all steps are done."""
-    average = 0.0
-    with tqdm(total=trainer.config.steps, initial=trainer.step, unit="step") as progress:
+    """Trains with a progress bar; whether all steps are done. Ctrl-C ends it after a whole step."""
+    average, stopped = 0.0, False
 
-        def show(step: int, loss: float) -> bool:
-            nonlocal average
-            average = loss if average == 0.0 else 0.98 * average + 0.02 * loss
-            progress.update(step - progress.n)
-            progress.set_postfix(loss=f"{average:.4f}")
-            return True
+    def stop(_signal: int, _frame: object) -> None:
+        nonlocal stopped
+        stopped = True
 
-        try:
+    def show(step: int, loss: float) -> bool:
+        nonlocal average
+        average = loss if average == 0.0 else 0.98 * average + 0.02 * loss
+        progress.update(step - progress.n)
+        progress.set_postfix(loss=f"{average:.4f}", refresh=False)
+        return not stopped
+
+    previous = signal.signal(signal.SIGINT, stop)
+    try:
+        with tqdm(total=trainer.config.steps, initial=trainer.step, unit="step") as progress:
             return trainer.run(show, checkpoint)
-        except KeyboardInterrupt:
-            trainer.save(checkpoint)
-            return False
+    finally:
+        signal.signal(signal.SIGINT, previous)
 
 
 def _parse(arguments: list[str] | None) -> argparse.Namespace:
