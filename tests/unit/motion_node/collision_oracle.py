@@ -167,6 +167,25 @@ class CollisionOracle:
         return found
 
 
+def switches(
+    oracle: CollisionOracle,
+    moves: Sequence[Move],
+    motion: Motion,
+    place_gap: float,
+    until: float = np.inf,
+) -> None:
+    """Takes and puts down blocks as a plan does up to a time, skipping the ways in between."""
+    trajectory = motion.trajectory
+    for interval in trajectory.intervals:
+        phase = interval.phase
+        if interval.gripping and interval.end <= until:
+            oracle.set_joints(trajectory.joint_names, trajectory.sample(interval.end)[0])
+            if phase.kind == PICK:
+                oracle.grasp(phase.object_name)
+            elif phase.kind == PLACE:
+                oracle.release(phase.object_name, moves[phase.move], place_gap)
+
+
 def replay(
     graph: SceneGraph,
     moves: Sequence[Move],

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from collision_oracle import replay
+from collision_oracle import CollisionOracle, replay, switches
 from motion_scenes import EDGE, random_heights, random_moves, scene
 
 from motion_node.optimiser import Motion, MotionOptimiser
@@ -167,6 +167,31 @@ def test_fingers_that_are_closed_open_before_the_arm_moves(optimiser: MotionOpti
     positions = motion.trajectory.sample(np.array([0.0, first.end]))[0]
     np.testing.assert_allclose(positions[0], [*PANDA.home, 0.0, 0.0])
     np.testing.assert_allclose(positions[1], [*PANDA.home, 0.04, 0.04])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_an_empty_hand_that_is_stopped_anywhere_goes_home_and_touches_nothing(
+    optimiser: MotionOptimiser, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    graph = scene(random_heights(rng, 6), rng)
+    moves = random_moves(graph, 3, rng)
+    motion = optimiser.solve(graph, moves, HOME_Q, OPEN)
+    empty = [i for i in motion.trajectory.intervals if not i.phase.tool.held and not i.gripping]
+    for interval in empty[:-1]:
+        time = rng.uniform(interval.start, interval.end)
+        brake = motion.trajectory.brake(time, 0.4)
+        rest = brake.positions[-1]
+        home = optimiser.solve_way_home(motion, interval.phase.move, rest[:7], rest[7:])
+        oracle = CollisionOracle(graph)
+        switches(oracle, moves, motion, optimiser.settings.phases.place_gap, until=time)
+        for trajectory in (brake, home.trajectory):
+            for at in np.arange(0.0, trajectory.duration, 0.04):
+                oracle.set_joints(trajectory.joint_names, trajectory.sample(at)[0])
+                nearest, _ = oracle.nearest(float(at))
+                assert nearest.distance > FREE, (time, nearest)
+        oracle.close()
+        np.testing.assert_allclose(home.trajectory.positions[-1], [*PANDA.home, 0.04, 0.04])
 
 
 def test_the_way_home_from_a_grasp_touches_nothing(optimiser: MotionOptimiser) -> None:
