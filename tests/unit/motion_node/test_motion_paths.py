@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from collision_oracle import CollisionOracle, replay, switches
 from motion_scenes import EDGE, random_heights, random_moves, scene
+from numpy.typing import NDArray
 
 from motion_node.optimiser import Motion, MotionOptimiser
 from motion_node.phases import HOME, PICK, PLACE
 from motion_node.robot import PANDA
-from scene_graph import Move, apply_move
+from scene_graph import Move, SceneGraph, apply_move
 
 HOME_Q = np.array(PANDA.home)
 OPEN = np.array([0.04, 0.04])
@@ -20,7 +21,12 @@ OPEN = np.array([0.04, 0.04])
 FREE = 0.008
 
 
-def judge(optimiser: MotionOptimiser, graph, moves: list[Move], start=HOME_Q) -> Motion:  # type: ignore[no-untyped-def]
+def judge(
+    optimiser: MotionOptimiser,
+    graph: SceneGraph,
+    moves: list[Move],
+    start: NDArray[np.float64] = HOME_Q,
+) -> Motion:
     motion = optimiser.solve(graph, moves, start, OPEN)
     result = replay(graph, moves, motion, optimiser.settings.phases.place_gap, vertical=0.03)
     assert result.free.distance > FREE, result.free

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -159,7 +159,9 @@ class Kinematics:
             if link not in self.links:
                 raise RobotDescriptionError(f"the robot description has no link {link!r}", link)
 
-    def _pose_by_parent(self, link, q, pose):  # type: ignore[no-untyped-def]
+    def _pose_by_parent(
+        self, link: str, q: ca.SX, pose: Callable[[str], tuple[ca.SX, ca.SX]]
+    ) -> tuple[ca.SX, ca.SX]:
         joint = self.by_child.get(link)
         if joint is None:
             return ca.SX.eye(3), ca.SX.zeros(3, 1)
