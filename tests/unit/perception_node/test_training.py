@@ -15,7 +15,7 @@ from perception_node.errors import DatasetError, WeightsError
 from perception_node.masks import object_images
 from perception_node.train_visual import main
 from perception_node.training import Trainer, TrainingConfig
-from perception_node.weights import load_weights
+from perception_node.weights import load_weights, read_metadata
 from sim_node.render_dataset import render_shard
 from sim_node.world import World
 
@@ -110,8 +110,11 @@ def test_the_command_trains_and_goes_on(
     arguments = ["--data", str(folder), "--run", str(tmp_path), "--threads", "1"]
     arguments += ["--steps", "2", "--batch-scenes", "2"]
     assert main(arguments) == 0
-    assert load_weights(tmp_path / "visual_module.safetensors").backbone == "pointing"
-    assert main(arguments) == 0
+    weights = tmp_path / "visual_module.safetensors"
+    assert load_weights(weights).backbone == "pointing"
+    # The header's command repeats the run: given to the same folder, there is nothing left to do.
+    command = read_metadata(weights)["command"].partition("train_visual ")[2].split()
+    assert main([*command, "--run", str(tmp_path), "--threads", "1"]) == 0
     assert "going on from step 2 of 2" in capsys.readouterr().out
 
 

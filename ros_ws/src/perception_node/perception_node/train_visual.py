@@ -122,9 +122,14 @@ def _parse(arguments: list[str] | None) -> argparse.Namespace:
 
 def _metadata(options: argparse.Namespace, trainer: Trainer) -> dict[str, str]:
     """How the weights came about, for the file's header."""
-    settings = " ".join(
-        f"--{name.replace('_', '-')} {value}" for name, value in asdict(trainer.config).items()
-    )
+    settings = []
+    for name, value in asdict(trainer.config).items():
+        flag = name.replace("_", "-")
+        if isinstance(value, bool):
+            settings.append(f"--{flag}" if value else f"--no-{flag}")
+        else:
+            settings.append(f"--{flag} {value}")
+    command = f"ros2 run perception_node train_visual --data {options.data} {' '.join(settings)}"
     try:
         commit = subprocess.run(
             ["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=True
@@ -132,7 +137,7 @@ def _metadata(options: argparse.Namespace, trainer: Trainer) -> dict[str, str]:
     except (OSError, subprocess.CalledProcessError):
         commit = "unknown"
     return {
-        "command": f"ros2 run perception_node train_visual --data {options.data} {settings}",
+        "command": command,
         "commit": commit,
         "date": date.today().isoformat(),
         "training_seconds": f"{trainer.seconds:.0f}",
