@@ -9,6 +9,7 @@ truth says that the goal was reached.
 from __future__ import annotations
 
 import argparse
+import io
 import json
 import sys
 import time
@@ -150,6 +151,9 @@ def main() -> int:
     options = parser.parse_args(remove_ros_args(sys.argv)[1:])
     if problem := _problem(options):
         parser.error(problem)
+    # Into a pipe or a file, too, a stage shows when it happens.
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(line_buffering=True)
     options.out = options.out or Path("runs") / datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
     options.out.mkdir(parents=True, exist_ok=True)
     domain = use_own_domain()
