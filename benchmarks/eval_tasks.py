@@ -18,6 +18,7 @@ from statistics import median
 import rclpy
 from rclpy.signals import SignalHandlerOptions
 from results_file import Row, print_rows, quick, wilson_interval, write_result
+from tamp_runtime.runner import prepare_process
 from tqdm import tqdm
 
 from planner_node.client import PlannerClient
@@ -149,6 +150,7 @@ def main() -> int:
         for old in folder.glob("*.json"):
             old.unlink()
     use_own_domain()
+    prepare_process()
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     started = time.monotonic()
     try:

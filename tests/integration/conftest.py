@@ -15,9 +15,14 @@ import rclpy
 from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
+from tamp_runtime.runner import prepare_process
 
-os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+prepare_process()
 os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
+
+#: How long to wait for what comes at once on an idle machine [s]. A test that passes waits for
+#: nothing, and machines that stand still for half a minute exist.
+PATIENCE = 120.0
 
 AnyNode = TypeVar("AnyNode", bound=Node)
 
@@ -57,7 +62,9 @@ class RosContext:
         node.destroy_node()
 
     @staticmethod
-    def wait_until(condition: Callable[[], object], timeout: float = 10.0, what: str = "") -> None:
+    def wait_until(
+        condition: Callable[[], object], timeout: float = PATIENCE, what: str = ""
+    ) -> None:
         """Returns as soon as a condition is true, fails the test if that takes longer [s]."""
         deadline = time.monotonic() + timeout
         while not condition():

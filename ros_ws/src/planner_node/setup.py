@@ -17,7 +17,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "planner_node = planner_node.node:main",
+            "planner_node = planner_node.executable:main",
             "plan_to_goal = planner_node.commands:plan_to_goal_main",
             "achieve_goal = planner_node.commands:achieve_goal_main",
         ]

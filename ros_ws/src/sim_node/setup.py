@@ -17,7 +17,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "sim_node = sim_node.node:main",
+            "sim_node = sim_node.executable:main",
             "render_dataset = sim_node.render_dataset:main",
         ]
     },

@@ -168,10 +168,10 @@ class Bench:
         )
         return node
 
-    def wait(self, condition: Callable[[], Any], what: str, timeout: float = 40.0) -> None:
+    def wait(self, condition: Callable[[], Any], what: str, timeout: float = 120.0) -> None:
         self.ros.wait_until(condition, timeout, what)
 
-    def end(self, plan_id: str, timeout: float = 60.0) -> MotionStatus:
+    def end(self, plan_id: str, timeout: float = 120.0) -> MotionStatus:
         self.wait(lambda: self.planner.end(plan_id), f"the end of {plan_id}", timeout)
         end = self.planner.end(plan_id)
         assert end is not None

@@ -34,7 +34,7 @@ def test_before_the_motion_is_optimised(bench: Bench) -> None:
     bench.planner.ask(plan_message("a", *[(0, 1), (1, 0)] * 6))
     bench.wait(lambda: bench.planner.of("a"), "taken up")
     bench.planner.stop("a")
-    end = bench.end("a", timeout=10.0)
+    end = bench.end("a")
     assert end.state == MotionStatus.CANCELLED
     assert not bench.arm.trajectories
 

@@ -15,7 +15,7 @@ from typing import Any
 
 from scene_graph import Move, SceneGraph
 
-from .arm_state import ArmState, ArmStateBox
+from .arm_state import ArmStateBox
 from .errors import CancelledError, InfeasibleError, InvalidPlanError
 from .following import ExecutionError, ExecutionSettings, Follower
 from .optimiser import Motion, MotionOptimiser
@@ -120,7 +120,7 @@ class Executive:
             optimisation_seconds=motion.seconds,
             duration=motion.trajectory.duration,
         )
-        self._run(motion, optimiser, follower, state, stop)
+        self._run(motion, optimiser, follower, stop)
 
     def _wait_for_optimiser(self, seconds: float, stop: threading.Event) -> MotionOptimiser:
         deadline = time.monotonic() + seconds
@@ -140,13 +140,11 @@ class Executive:
         motion: Motion,
         optimiser: MotionOptimiser,
         follower: Follower,
-        state: ArmState,
         stop: threading.Event,
     ) -> None:
         try:
             arrived = follower.follow(
                 motion.trajectory,
-                state,
                 self._tell_progress,
                 lambda: stop.is_set() and follower.empty_handed,
             )
@@ -188,7 +186,7 @@ class Executive:
         home = optimiser.solve_way_home(
             motion, moves_done, state.positions[:-2], state.positions[-2:]
         )
-        follower.follow(home.trajectory, state)
+        follower.follow(home.trajectory)
 
     # Reports
 

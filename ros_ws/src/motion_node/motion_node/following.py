@@ -71,6 +71,8 @@ class Follower:
 
     #: How far ahead of the arm a replacement for a running trajectory starts [s].
     LEAD = 0.03
+    #: How far an arm joint may be from a trajectory's first point when it is sent [rad].
+    START_TOLERANCE = 0.05
 
     def __init__(
         self, arm: ArmStateBox, send: Callable[[Trajectory], None], settings: ExecutionSettings
@@ -148,16 +150,14 @@ class Follower:
     def follow(
         self,
         trajectory: Trajectory,
-        state: ArmState,
         on_progress: Callable[[Trajectory, float], None] = lambda _trajectory, _time: None,
         stopped: Callable[[], bool] = lambda: False,
     ) -> bool:
         """Sends a trajectory and watches it; True when the arm has arrived at its end.
 
         Args:
-            state: the arm's state that the trajectory starts from.
             on_progress: told the trajectory's time after each joint state.
-            stopped: polled after each joint state; returns False at once when it says so, with
+            stopped: polled after each joint state of an arm that has started; returns False at once when it says so, with
                 the trajectory still running.
 
         Raises:
@@ -165,6 +165,14 @@ class Follower:
         """
         begin = moving = time.monotonic()
         limit = self.settings.execution_factor * trajectory.duration + 30.0
+        # Not the state from which the motion was optimised: that took a while.
+        state = self._arm.newest()
+        assert state is not None, "a trajectory starts from a state"
+        if np.abs(state.positions - trajectory.positions[0])[:-2].max() > self.START_TOLERANCE:
+            raise ExecutionError(
+                Reason.TRACKING_LOST,
+                "the arm has moved while its motion was optimised; let it rest, and ask again",
+            )
         monitor = Monitor(trajectory, state, self.settings.monitor)
         self._trajectory, self.time = trajectory, 0.0
         self._send(trajectory)
@@ -177,7 +185,8 @@ class Follower:
                 return True
             if verdict is not Verdict.GOING:
                 self._object(verdict, state)
-            if stopped():
+            # An arm that has not started may not have the trajectory yet, and rest before it.
+            if monitor.started and stopped():
                 return False
             now = time.monotonic()
             moving = now if state.stamp > previous.stamp else moving

@@ -71,6 +71,8 @@ class Monitor:
     STARTED_FINGER = 0.001
     #: How much a second away from the expected time counts against a deviation [rad/s].
     TIME_WEIGHT = 0.03
+    #: Spacing of the times at which the arm is looked for when it has started [s].
+    STEP = 0.02
 
     def __init__(self, trajectory: Trajectory, state: ArmState, settings: MonitorSettings) -> None:
         self.trajectory, self.settings = trajectory, settings
@@ -84,6 +86,11 @@ class Monitor:
         self._started = not moves_arm and span[self._arm :].max() < 2 * self.STARTED_FINGER
         self._off_since: float | None = None
         self._empty_since: float | None = None
+
+    @property
+    def started(self) -> bool:
+        """Whether the arm has been seen to move along."""
+        return self._started
 
     def update(self, state: ArmState) -> Verdict:
         """Takes in a new state; ``time`` is the trajectory's time afterwards [s]."""
@@ -130,13 +137,16 @@ class Monitor:
             or moved[self._arm :].max() > self.STARTED_FINGER
         )
         if self._started:
-            # The trajectory needed some time to come this far; look for it from its beginning.
-            first = self.trajectory.positions[0]
-            far = np.abs(self.trajectory.positions - first)
-            begun = (far[:, : self._arm].max(axis=1) > self.STARTED) | (
-                far[:, self._arm :].max(axis=1) > self.STARTED_FINGER
+            # The trajectory needed some time to come this far, and so did these news; look for it
+            # from its beginning to where it can be at most.
+            away = np.abs(self.trajectory.positions - self.trajectory.positions[0])
+            begun = (away[:, : self._arm].max(axis=1) > self.STARTED) | (
+                away[:, self._arm :].max(axis=1) > self.STARTED_FINGER
             )
-            self.time = float(self.trajectory.times[int(np.argmax(begun))])
+            first = float(self.trajectory.times[int(np.argmax(begun))])
+            latest = min(state.stamp - self._sent.stamp, self.trajectory.duration)
+            times = np.append(first, np.arange(first, latest, self.STEP))
+            self._match(state, times, first)
             self._anchor = max(self._sent.stamp, state.stamp - self.time)
         return self._started
 
@@ -147,6 +157,10 @@ class Monitor:
         low = max(0.0, self.time - 0.3)
         high = max(low, min(expected + 0.5, latest, self.trajectory.duration))
         times = np.append(np.linspace(low, high, 41), np.clip(expected, low, high))
+        return self._match(state, times, expected)
+
+    def _match(self, state: ArmState, times: Array, expected: float) -> float:
+        """Sets ``time`` to that of ``times`` at which the path is nearest; see ``_locate``."""
         positions, _ = self.trajectory.sample(times)
         errors = np.abs(positions[:, : self._arm] - state.positions[: self._arm]).max(axis=1)
         best = int(np.argmin(errors + self.TIME_WEIGHT * np.abs(times - expected)))

@@ -251,6 +251,6 @@ class MotionNode(Node):
         self._statuses.publish(report_to_message(report, self.get_clock().now().to_msg()))
 
 
-def main() -> int:
-    """Entry point of ``ros2 run motion_node motion_node``."""
+def run() -> int:
+    """Runs the node until it is stopped; returns the process's exit code."""
     return run_node(MotionNode)

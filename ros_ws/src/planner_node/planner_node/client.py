@@ -23,12 +23,12 @@ from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
 from rclpy.action.client import ClientGoalHandle
 from rclpy.context import Context
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.task import Future
 from sensor_msgs.msg import Image
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.srv import PlanToGoal
+from tamp_runtime.spinning import NodeThread
 
 #: The planner counts as gone when it has not been seen for this long [s].
 GONE_SECONDS: Final = 2.0
@@ -55,11 +55,7 @@ class PlannerClient:
         self._handle: ClientGoalHandle | None = None
         self._result: Future | None = None
         self._gone_since: float | None = None
-        self._executor = SingleThreadedExecutor(context=context)
-        self._executor.add_node(self._node)
-        self._closing = threading.Event()
-        self._thread = threading.Thread(target=self._spin, name=name, daemon=True)
-        self._thread.start()
+        self._thread = NodeThread(self._node)
 
     def plan(
         self,
@@ -183,9 +179,7 @@ class PlannerClient:
 
     def close(self) -> None:
         """Stops the thread and removes the node; a goal that is under way goes on."""
-        self._closing.set()
-        self._thread.join()
-        self._executor.shutdown()
+        self._thread.stop()
         self._goal_client.destroy()
         self._node.destroy_node()
 
@@ -204,13 +198,6 @@ class PlannerClient:
         if self._result is None:
             raise RuntimeError("no goal was started; call start() first")
         return self._result
-
-    def _spin(self) -> None:
-        try:
-            while not self._closing.is_set():
-                self._executor.spin_once(timeout_sec=0.05)
-        except ExternalShutdownException:
-            pass  # whoever waits gets its own time-out
 
     @staticmethod
     def _wait(future: Future, remaining: float, timeout: float) -> Any:

@@ -22,7 +22,7 @@ from std_msgs.msg import Header
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.srv import PlanToGoal
 from tamp_runtime.images import image_from_array
-from tamp_runtime.runner import keep_discovery_on_this_host
+from tamp_runtime.runner import prepare_process
 
 from .client import PlannerClient, PlannerUnavailableError
 from .plan_text import describe_plan
@@ -35,6 +35,8 @@ EXIT_CANCELLED: Final = 130
 ANSWER_TIMEOUT: Final = 10.0
 #: How long a cancelled motion may take until it rests [s].
 CANCEL_TIMEOUT: Final = 60.0
+#: How long feedback may take to arrive after the result [s].
+FEEDBACK_GRACE: Final = 0.2
 
 
 def plan_to_goal(arguments: Sequence[str] | None = None) -> int:
@@ -152,7 +154,7 @@ def _read_images(
 
 
 def _init(arguments: Sequence[str]) -> None:
-    keep_discovery_on_this_host()
+    prepare_process()
     # Ctrl-C must reach this program as KeyboardInterrupt, even where a shell starts it with SIGINT
     # ignored: it still has a goal to cancel.
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -169,6 +171,9 @@ def _follow(planner: PlannerClient, timeout: float) -> bool:
             if feedback is not None:
                 printer.show(feedback)
             elif planner.is_done():
+                # Feedback travels by itself; the last may arrive after the result.
+                while feedback := planner.next_feedback(timeout=FEEDBACK_GRACE):
+                    printer.show(feedback)
                 return True
         return False
     finally:

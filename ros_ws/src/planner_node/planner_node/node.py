@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import functools
-import sys
 import threading
 import traceback
 import uuid
@@ -220,5 +219,6 @@ class PlannerNode(Node):
         return nanoseconds
 
 
-def main() -> None:
-    sys.exit(run_node(PlannerNode, threads=THREADS))
+def run() -> int:
+    """Runs the node until it is stopped; returns the process's exit code."""
+    return run_node(PlannerNode, threads=THREADS)

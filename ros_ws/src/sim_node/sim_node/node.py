@@ -249,6 +249,6 @@ class SimNode(Node):
             topic.publish(message)
 
 
-def main() -> int:
-    """Entry point of ``ros2 run sim_node sim_node``."""
+def run() -> int:
+    """Runs the node until it is stopped; returns the process's exit code."""
     return run_node(SimNode)

@@ -24,6 +24,7 @@ from rclpy.utilities import remove_ros_args
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.msg import MotionStatus
 from tamp_runtime.conversions import graph_from_message, moves_from_messages
+from tamp_runtime.runner import prepare_process
 from tqdm import tqdm
 
 from planner_node.client import PlannerClient
@@ -157,6 +158,7 @@ def main() -> int:
     options.out = options.out or Path("runs") / datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
     options.out.mkdir(parents=True, exist_ok=True)
     domain = use_own_domain()
+    prepare_process()
     print(f"demo     ROS_DOMAIN_ID={domain}: with it, other terminals can listen in")
     # Ctrl-C must reach this program as KeyboardInterrupt, so that it can stop the arm first.
     rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)

@@ -10,13 +10,13 @@ from types import TracebackType
 from typing import Any
 
 import rclpy
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from sensor_msgs.msg import Image
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_interfaces.srv import ResetScene
 from tamp_runtime.conversions import graph_from_message
 from tamp_runtime.images import array_from_image
 from tamp_runtime.qos import LATCHED, NEWEST
+from tamp_runtime.spinning import NodeThread
 
 from scene_graph import InconsistentRelationsError, SceneGraph, Stacks
 from sim_node.layouts import format_layout
@@ -50,11 +50,7 @@ class SceneObserver:
         node.create_subscription(SceneGraphMsg, "scene_graph", self._on_graph, NEWEST)
         node.create_subscription(Image, "camera/image_raw", self._on_image, NEWEST)
         self._reset = node.create_client(ResetScene, "sim/reset")
-        self._executor = SingleThreadedExecutor()
-        self._executor.add_node(node)
-        self._closing = threading.Event()
-        self._thread = threading.Thread(target=self._spin, name="scene_observer", daemon=True)
-        self._thread.start()
+        self._thread = NodeThread(node)
 
     def __enter__(self) -> SceneObserver:
         return self
@@ -65,9 +61,7 @@ class SceneObserver:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._closing.set()
-        self._thread.join(timeout=5.0)
-        self._executor.shutdown()
+        self._thread.stop()
         self._node.destroy_node()
 
     def reset(
@@ -151,13 +145,6 @@ class SceneObserver:
         if self.recording is not None:
             stamp = message.header.stamp
             self.recording.add(array_from_image(message, "rgb8"), stamp.sec + 1e-9 * stamp.nanosec)
-
-    def _spin(self) -> None:
-        try:
-            while not self._closing.is_set():
-                self._executor.spin_once(timeout_sec=0.05)
-        except ExternalShutdownException:
-            pass  # whoever waits gets its own time-out
 
 
 def true_stacks(truth: SceneGraph) -> Stacks | None:

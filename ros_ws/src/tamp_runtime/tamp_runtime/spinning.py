@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A node that is spun by a thread of its own, for programs that have other things to do."""
+
+from __future__ import annotations
+
+import threading
+
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+
+
+class NodeThread:
+    """Spins a node from now until :meth:`stop`."""
+
+    def __init__(self, node: Node) -> None:
+        self._executor = SingleThreadedExecutor(context=node.context)
+        self._executor.add_node(node)
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._spin, name=node.get_name(), daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stops spinning; no callback runs afterwards, and the node can be destroyed."""
+        self._stopping.set()
+        self._thread.join()
+        self._executor.shutdown()
+
+    def _spin(self) -> None:
+        try:
+            while not self._stopping.is_set():
+                self._executor.spin_once(timeout_sec=0.05)
+        except ExternalShutdownException:
+            pass  # whoever waits gets its own time-out
