@@ -78,6 +78,22 @@ def test_every_shape_rests_on_the_table_and_is_seen(world: World, shape: str) ->
     assert red > 2 * green and red > 2 * blue
 
 
+def test_every_pixel_of_a_block_lies_on_its_surface(world: World) -> None:
+    """Depth, labels and intrinsics belong together to a tenth of a millimetre."""
+    world.reset((("red_box", "purple_box"), ("green_box",), ("blue_box",)), 3)
+    frame = world.render()
+    camera = world.config.camera
+    for name in world.names:
+        rows, columns = np.nonzero(frame.labels == world.label(name))
+        depth = frame.depth[rows, columns].astype(float)
+        rays = np.linalg.inv(camera.intrinsics) @ [columns, rows, np.ones(len(rows))]
+        points = (camera.world_from_optical @ [*(rays * depth), np.ones(len(rows))])[:3].T
+        position, quaternion = world.block_pose(name)
+        rotation = np.reshape(pybullet.getMatrixFromQuaternion(quaternion), (3, 3))
+        inside = 0.0225 - np.abs((points - position) @ rotation)
+        assert np.abs(inside.min(axis=1)).max() < 1e-4
+
+
 def test_depth_and_labels_agree_with_the_geometry(world: World) -> None:
     world.reset(((), ("green_box",), ()))
     frame = world.render()

@@ -157,8 +157,8 @@ class Follower:
 
         Args:
             on_progress: told the trajectory's time after each joint state.
-            stopped: polled after each joint state of an arm that has started; returns False at once when it says so, with
-                the trajectory still running.
+            stopped: polled after each joint state of an arm that has started; returns False at
+                once when it says so, with the trajectory still running.
 
         Raises:
             ExecutionError: if it does not go as it should.

@@ -30,12 +30,15 @@ class CameraConfig:
 
     @property
     def intrinsics(self) -> NDArray[np.float64]:
-        """K, shape (3, 3) [px]."""
+        """K, shape (3, 3) [px], of pixels whose centres have whole coordinates.
+
+        pybullet's software renderer looks through the left and lower corner of each pixel.
+        """
         focal = 0.5 * self.height / np.tan(0.5 * self.vertical_fov)
         return np.array(
             [
-                [focal, 0.0, 0.5 * self.width - 0.5],
-                [0.0, focal, 0.5 * self.height - 0.5],
+                [focal, 0.0, 0.5 * self.width],
+                [0.0, focal, 0.5 * self.height - 1.0],
                 [0.0, 0.0, 1.0],
             ]
         )

@@ -14,7 +14,6 @@ from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-
 #: After how long a thread that computes passes the interpreter on to one that waits for it [s].
 SWITCH_INTERVAL = 5e-4
 
