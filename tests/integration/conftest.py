@@ -15,6 +15,7 @@ import rclpy
 from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
+from ros2_run import Process, Start, ros2_run
 from tamp_runtime.runner import prepare_process
 
 prepare_process()
@@ -103,3 +104,19 @@ def ros_context() -> Iterator[RosContext]:
         yield ros
     finally:
         ros.close()
+
+
+@pytest.fixture
+def start(ros_context: RosContext) -> Iterator[Start]:
+    """Starts executables in the context's domain; what still runs when the test ends is killed."""
+    processes: list[Process] = []
+
+    def run(package: str, executable: str, *arguments: str) -> Process:
+        processes.append(ros2_run(ros_context.domain_id, package, executable, *arguments))
+        return processes[-1]
+
+    yield run
+    for process in processes:
+        if process.poll() is None:
+            process.kill()
+            process.communicate()

@@ -3,51 +3,16 @@
 
 from __future__ import annotations
 
-import os
 import signal
-import subprocess
-from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 from motion_neighbours import HOME, Bench, plan_message
+from ros2_run import Start, finish
 from tamp_interfaces.msg import MotionStatus
 
-#: A process imports casadi and rclpy; slow machines need a while.
-PROCESS_TIMEOUT = 60.0
-
-Start = Callable[..., "subprocess.Popen[str]"]
-
-
-@pytest.fixture
-def start(ros_context: Any) -> Iterator[Start]:
-    """``start(*arguments)`` runs the node."""
-    processes: list[subprocess.Popen[str]] = []
-
-    def run(*arguments: str) -> subprocess.Popen[str]:
-        processes.append(
-            subprocess.Popen(
-                ["ros2", "run", "motion_node", "motion_node", *arguments],
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                text=True,
-                env={**os.environ, "ROS_DOMAIN_ID": str(ros_context.domain_id)},
-            )
-        )
-        return processes[-1]
-
-    yield run
-    for process in processes:
-        if process.poll() is None:
-            process.kill()
-            process.communicate()
-
-
-def finish(process: subprocess.Popen[str]) -> tuple[int, str]:
-    _, stderr = process.communicate(timeout=PROCESS_TIMEOUT)
-    assert "Traceback" not in stderr, stderr
-    return process.returncode, stderr
+NODE = ("motion_node", "motion_node")
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -55,21 +20,21 @@ def test_a_signal_ends_it_with_exit_code_0(
     ros_context: Any, start: Start, number: signal.Signals
 ) -> None:
     bench = Bench(ros_context)
-    process = start()
+    process = start(*NODE)
     bench.wait_for_idle()
     process.send_signal(number)
-    assert finish(process)[0] == 0
+    assert finish(process).code == 0
 
 
 def test_a_signal_ends_it_in_the_middle_of_a_plan(ros_context: Any, start: Start) -> None:
     """The trajectory that was sent goes on: it ends at home with an empty hand."""
     bench = Bench(ros_context)
-    process = start()
+    process = start(*NODE)
     bench.wait_for_idle()
     bench.planner.ask(plan_message("a", (0, 2)))
     bench.wait_for_phase("a", "place", 0)
     process.send_signal(signal.SIGINT)
-    assert finish(process)[0] == 0
+    assert finish(process).code == 0
     bench.wait(lambda: np.abs(bench.arm.positions - HOME).max() < 0.02, "the arm at home")
 
 
@@ -80,18 +45,18 @@ def test_started_by_hand_with_parameters_and_remappings_it_does_its_job_again_an
     for plan_id in ("a", "b"):  # stopped and started again, with plan a still latched
         bench.planner.statuses.clear()
         process = start(
-            "--ros-args", "-r", "__node:=motion", "-p", "velocity_scale:=0.5", "-r", "x:=y"
+            *NODE, "--ros-args", "-r", "__node:=motion", "-p", "velocity_scale:=0.5", "-r", "x:=y"
         )
         bench.wait_for_idle()
         assert "motion" in bench.planner.get_node_names()
         bench.planner.ask(plan_message(plan_id, (0, 2)))
         assert bench.end(plan_id).state == MotionStatus.SUCCEEDED
         process.send_signal(signal.SIGINT)
-        assert finish(process)[0] == 0
+        assert finish(process).code == 0
     assert not bench.planner.of("a")
 
 
 def test_a_parameter_out_of_range_is_one_sentence(start: Start) -> None:
-    code, stderr = finish(start("--ros-args", "-p", "acceleration_scale:=7.0"))
+    code, _, stderr = finish(start(*NODE, "--ros-args", "-p", "acceleration_scale:=7.0"))
     assert code == 2
     assert "acceleration_scale" in stderr

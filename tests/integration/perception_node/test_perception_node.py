@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-import os
 import signal
-import subprocess
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -18,6 +16,7 @@ from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from ros2_run import PROCESS_TIMEOUT, Start, finish
 from sensor_msgs.msg import CameraInfo, Image
 from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import ImageToSceneGraph
@@ -32,6 +31,8 @@ from sim_node.camera import Frame
 from sim_node.conversions import camera_messages, extrinsics_message
 from sim_node.scene import CameraConfig
 from sim_node.world import World
+
+EXECUTABLE = ("perception_node", "perception_node")
 
 TOWERS: Stacks = (("red_box", "blue_box"), ("green_box",), ("yellow_box", "purple_box"))
 OTHER: Stacks = ((), ("green_box", "blue_box", "red_box"), ("purple_box", "yellow_box"))
@@ -273,54 +274,30 @@ def test_the_verdicts_have_the_numbers_of_the_interface() -> None:
         assert getattr(SceneGraph, status.name) == status.value
 
 
-@pytest.fixture
-def environment(ros_context: Any) -> dict[str, str]:
-    return {**os.environ, "ROS_DOMAIN_ID": str(ros_context.domain_id)}
-
-
-def run(environment: dict[str, str], *arguments: str) -> subprocess.Popen[str]:
-    return subprocess.Popen(
-        ["ros2", "run", "perception_node", "perception_node", "--ros-args", *arguments],
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
-
-
 def test_as_a_process_it_stops_on_sigint_without_a_trace(
-    ros_context: Any, environment: dict[str, str], frames: dict[Stacks, Frame]
+    ros_context: Any, start: Start, frames: dict[Stacks, Frame]
 ) -> None:
     node = Node("fake_camera", context=ros_context.context, namespace="/cell")
     camera = FakeCamera(ros_context.add(node))
-    process = run(environment, "-r", "__ns:=/cell", "-p", "threads:=2")
-    try:
-        ros_context.wait_until(
-            lambda: all(p.get_subscription_count() for p in camera.publishers), 60.0
-        )
-        camera.calibrate()
-        deadline = time.monotonic() + 30.0
-        while not any(graph.status == SceneGraph.CONFIDENT for graph in camera.graphs):
-            camera.send(camera.messages(frames[TOWERS]))
-            time.sleep(0.2)
-            assert time.monotonic() < deadline
-        process.send_signal(signal.SIGINT)
-        output, _ = process.communicate(timeout=30)
-    finally:
-        process.kill()
-    assert process.returncode == 0, output
-    assert "Traceback" not in output and "Exception" not in output
+    process = start(*EXECUTABLE, "--ros-args", "-r", "__ns:=/cell", "-p", "threads:=2")
+    ros_context.wait_until(lambda: all(p.get_subscription_count() for p in camera.publishers))
+    camera.calibrate()
+    deadline = time.monotonic() + PROCESS_TIMEOUT
+    while not any(graph.status == SceneGraph.CONFIDENT for graph in camera.graphs):
+        camera.send(camera.messages(frames[TOWERS]))
+        time.sleep(0.2)
+        assert time.monotonic() < deadline
+    process.send_signal(signal.SIGINT)
+    code, _, stderr = finish(process)
+    assert code == 0
+    assert "Exception" not in stderr
 
 
 @pytest.mark.parametrize("kind", ["missing", "foreign"])
-def test_bad_weights_are_refused_with_a_sentence(
-    environment: dict[str, str], tmp_path: Path, kind: str
-) -> None:
+def test_bad_weights_are_refused_with_a_sentence(start: Start, tmp_path: Path, kind: str) -> None:
     path = tmp_path / "weights.safetensors"
     if kind == "foreign":
         path.write_bytes(b"\x80\x04 a pickle perhaps")
-    process = run(environment, "-p", f"weights:={path}")
-    output, _ = process.communicate(timeout=60)
-    assert process.returncode == 2
-    assert f"weights file {path}" in output and "make train-visual" in output
-    assert "Traceback" not in output
+    code, _, stderr = finish(start(*EXECUTABLE, "--ros-args", "-p", f"weights:={path}"))
+    assert code == 2
+    assert f"weights file {path}" in stderr and "make train-visual" in stderr

@@ -3,11 +3,8 @@
 
 from __future__ import annotations
 
-import os
 import signal
-import subprocess
 import time
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,52 +13,20 @@ import pytest
 from builtin_interfaces.msg import Time
 from PIL import Image
 from planner_neighbours import run_until_stopped, scene_message
+from ros2_run import PROCESS_TIMEOUT, Start, finish
 from tamp_interfaces.action import AchieveGoal
 
 from planner_node import commands
 from planner_node.client import PlannerClient, PlannerUnavailableError
 
+PACKAGE = "planner_node"
 GOAL = "red on green, blue on red"
-#: A process imports rclpy and finds its neighbours; slow machines need a while.
-PROCESS_TIMEOUT = 60.0
-
-Start = Callable[..., "subprocess.Popen[str]"]
-
-
-@pytest.fixture
-def start(ros_context: Any) -> Iterator[Start]:
-    """``start(executable, *arguments)`` runs an executable of planner_node."""
-    processes: list[subprocess.Popen[str]] = []
-
-    def run(executable: str, *arguments: str) -> subprocess.Popen[str]:
-        processes.append(
-            subprocess.Popen(
-                ["ros2", "run", "planner_node", executable, *arguments],
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                text=True,
-                env={**os.environ, "ROS_DOMAIN_ID": str(ros_context.domain_id)},
-            )
-        )
-        return processes[-1]
-
-    yield run
-    for process in processes:
-        if process.poll() is None:
-            process.kill()
-            process.communicate()
-
-
-def finish(process: subprocess.Popen[str]) -> tuple[int, str, str]:
-    stdout, stderr = process.communicate(timeout=PROCESS_TIMEOUT)
-    assert "Traceback" not in stderr, stderr
-    return process.returncode, stdout, stderr
 
 
 def test_a_plan_is_printed_move_by_move(make_bench: Any, start: Start) -> None:
     bench = make_bench()
     bench.wait_for_scene()
-    code, stdout, _ = finish(start("plan_to_goal", GOAL))
+    code, stdout, _ = finish(start(PACKAGE, "plan_to_goal", GOAL))
     assert code == 0
     lines = stdout.splitlines()
     assert lines[0].startswith("3 moves to 'red_box on green_box")
@@ -76,27 +41,27 @@ def test_a_plan_is_printed_move_by_move(make_bench: Any, start: Start) -> None:
 def test_a_plan_can_be_executed_from_the_command_line(make_bench: Any, start: Start) -> None:
     bench = make_bench()
     bench.wait_for_scene()
-    assert finish(start("plan_to_goal", "red on green", "--execute"))[0] == 0
+    assert finish(start(PACKAGE, "plan_to_goal", "red on green", "--execute"))[0] == 0
     bench.ros.wait_until(lambda: len(bench.world.moves) == 2)
 
 
 def test_a_refused_goal_is_explained(make_bench: Any, start: Start) -> None:
     make_bench().wait_for_scene()
-    code, stdout, stderr = finish(start("plan_to_goal", "red on purple"))
+    code, stdout, stderr = finish(start(PACKAGE, "plan_to_goal", "red on purple"))
     assert (code, stdout) == (1, "")
     assert "blue_box, green_box, red_box" in stderr
 
 
 @pytest.mark.parametrize("executable", ["plan_to_goal", "achieve_goal"])
 def test_without_a_planner_the_clients_say_how_to_start_it(start: Start, executable: str) -> None:
-    code, _, stderr = finish(start(executable, GOAL, "--timeout", "1"))
+    code, _, stderr = finish(start(PACKAGE, executable, GOAL, "--timeout", "1"))
     assert code == 1
     assert "ros2 run planner_node planner_node" in stderr
 
 
 def test_an_achieved_goal_shows_its_stages(make_bench: Any, start: Start) -> None:
     bench = make_bench()
-    code, stdout, _ = finish(start("achieve_goal", GOAL))
+    code, stdout, _ = finish(start(PACKAGE, "achieve_goal", GOAL))
     assert code == 0
     first_words = [line.split()[0] for line in stdout.splitlines()]
     stages = [word for word in dict.fromkeys(first_words) if word.isalpha()]
@@ -107,7 +72,7 @@ def test_an_achieved_goal_shows_its_stages(make_bench: Any, start: Start) -> Non
 
 def test_a_failed_goal_is_explained(make_bench: Any, start: Start) -> None:
     make_bench()
-    code, _, stderr = finish(start("achieve_goal", "red left of blue, red on blue"))
+    code, _, stderr = finish(start(PACKAGE, "achieve_goal", "red left of blue, red on blue"))
     assert code == 1
     assert "[planner]" in stderr
     assert "in one stack and apart" in stderr
@@ -115,7 +80,7 @@ def test_a_failed_goal_is_explained(make_bench: Any, start: Start) -> None:
 
 def test_ctrl_c_cancels_the_goal_and_waits_for_the_arm(make_bench: Any, start: Start) -> None:
     bench = make_bench(run_until_stopped)
-    process = start("achieve_goal", GOAL)
+    process = start(PACKAGE, "achieve_goal", GOAL)
     bench.ros.wait_until(lambda: bench.motion.plans, PROCESS_TIMEOUT)
     process.send_signal(signal.SIGINT)
     code, _, stderr = finish(process)
@@ -126,7 +91,7 @@ def test_ctrl_c_cancels_the_goal_and_waits_for_the_arm(make_bench: Any, start: S
 
 def test_a_goal_that_takes_too_long_is_cancelled(make_bench: Any, start: Start) -> None:
     bench = make_bench(run_until_stopped)
-    code, _, stderr = finish(start("achieve_goal", GOAL, "--timeout", "12"))
+    code, _, stderr = finish(start(PACKAGE, "achieve_goal", GOAL, "--timeout", "12"))
     assert code == 1
     assert "not done after 12 s" in stderr
     assert len(bench.motion.stops) == 1
@@ -141,7 +106,7 @@ def test_goal_images_are_read_from_files(make_bench: Any, start: Start, tmp_path
     Image.fromarray(np.full((4, 6, 3), 7, np.uint8)).save(colors)
     Image.fromarray(np.full((4, 6), 300, np.uint16)).save(labels)
     images = ("--goal-image", str(colors), "--goal-segmentation", str(labels))
-    code, stdout, stderr = finish(start("plan_to_goal", *images))
+    code, stdout, stderr = finish(start(PACKAGE, "plan_to_goal", *images))
     assert code == 0, stderr
     assert "(1, 2) green_box" in stdout
     request = bench.perception.requests[0]
@@ -171,8 +136,8 @@ def test_bad_arguments_are_refused(
 
 
 def test_names_can_be_remapped_on_the_command_line(start: Start) -> None:
-    node = start("planner_node", "--ros-args", "-r", "__ns:=/lab", "-p", "max_replans:=1")
-    code, _, stderr = finish(start("plan_to_goal", GOAL, "--ros-args", "-r", "__ns:=/lab"))
+    node = start(PACKAGE, "planner_node", "--ros-args", "-r", "__ns:=/lab", "-p", "max_replans:=1")
+    code, _, stderr = finish(start(PACKAGE, "plan_to_goal", GOAL, "--ros-args", "-r", "__ns:=/lab"))
     assert code == 1
     assert "no scene graph has arrived" in stderr
     node.send_signal(signal.SIGINT)
@@ -180,14 +145,14 @@ def test_names_can_be_remapped_on_the_command_line(start: Start) -> None:
 
 
 def test_a_parameter_out_of_range_stops_the_node_with_a_sentence(start: Start) -> None:
-    code, _, stderr = finish(start("planner_node", "--ros-args", "-p", "max_replans:=-1"))
+    code, _, stderr = finish(start(PACKAGE, "planner_node", "--ros-args", "-p", "max_replans:=-1"))
     assert code == 2
     assert "max_replans" in stderr
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_the_node_stops_on_signals(ros_context: Any, start: Start, number: int) -> None:
-    node = start("planner_node")
+    node = start(PACKAGE, "planner_node")
     with PlannerClient(ros_context.context) as client:
         assert client.plan(GOAL, timeout=PROCESS_TIMEOUT).message
         node.send_signal(number)
@@ -201,7 +166,7 @@ def test_the_node_stops_while_the_arm_moves_and_can_be_started_again(
 ) -> None:
     bench = make_bench(run_until_stopped)
     bench.ros.remove(bench.planner)
-    node = start("planner_node")
+    node = start(PACKAGE, "planner_node")
     bench.client.start(GOAL, timeout=PROCESS_TIMEOUT)
     bench.feedback_until(lambda item: item.stage == AchieveGoal.Feedback.EXECUTING)
     node.send_signal(signal.SIGINT)
@@ -209,7 +174,7 @@ def test_the_node_stops_while_the_arm_moves_and_can_be_started_again(
     with pytest.raises(PlannerUnavailableError, match="went away"):
         bench.client.result(PROCESS_TIMEOUT)
 
-    start("planner_node")
+    start(PACKAGE, "planner_node")
     # The motion goes on, and the new planner sees that the plan is not its own.
     answer = bench.client.plan("red on blue", timeout=PROCESS_TIMEOUT)
     deadline = time.monotonic() + PROCESS_TIMEOUT

@@ -8,6 +8,7 @@ import sys
 import traceback
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 
 import rclpy
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
@@ -55,7 +56,10 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
         print(f"cannot start: {error}", file=sys.stderr)
         return 2
     finally:
-        rclpy.try_shutdown()
+        # It looks first whether there is anything to shut down, but rclpy's thread for signals can
+        # come in between: an RCLError, which is a RuntimeError.
+        with suppress(RuntimeError):
+            rclpy.try_shutdown()
         # Executor.shutdown of rclpy 7.1.6 leaves running callbacks behind; a node must not be
         # destroyed under one. They see the shutdown, and every wait in them has a timeout.
         workers: ThreadPoolExecutor = executor._executor
