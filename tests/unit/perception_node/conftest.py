@@ -2,9 +2,6 @@
 """Tests of perception run on shared processors: nothing here depends on how long it takes."""
 
 import torch
-from hypothesis import settings
 
-settings.register_profile("any_speed", deadline=None)
-settings.load_profile("any_speed")
 # Several threads on processors that others use wait for one another most of the time.
 torch.set_num_threads(1)

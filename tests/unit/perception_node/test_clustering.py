@@ -25,7 +25,7 @@ def least_cost(values: list[float], count: int) -> float:
     return min(costs)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(numbers, st.integers(1, 3))
 def test_no_other_clustering_is_better(values: list[float], count: int) -> None:
     count = min(count, len(values))

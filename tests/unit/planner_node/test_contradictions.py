@@ -88,7 +88,7 @@ RELATIONS = st.one_of(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.lists(RELATIONS, min_size=1, max_size=6), st.sampled_from((1, 2, 3)))
 def test_nothing_that_some_state_fulfils_is_called_contradictory(
     relations: list[GoalRelation], stack_count: int
@@ -101,7 +101,7 @@ def test_nothing_that_some_state_fulfils_is_called_contradictory(
         )
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.lists(RELATIONS, min_size=1, max_size=6))
 def test_the_named_relations_exclude_one_another_by_themselves(
     relations: list[GoalRelation],

@@ -34,7 +34,7 @@ def check_plan(initial: Stacks, goal: Goal, result: SearchResult) -> None:
         assert relation_holds(result.states[-1], item.subject, item.predicate, item.object)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.data())
 def test_plans_for_partial_goals_are_shortest(data: st.DataObject) -> None:
     stack_count = data.draw(st.sampled_from((1, 2, 3)))
