@@ -63,11 +63,11 @@ class Bench:
                 return
         raise AssertionError(answer)
 
-    def achieve(self, goal: str, timeout: float = 20.0) -> Any:
+    def achieve(self, goal: str, timeout: float = 60.0) -> Any:
         self.client.start(goal)
         return self.client.result(timeout)
 
-    def feedback_until(self, condition: Callable[[Any], bool], timeout: float = 10.0) -> list[Any]:
+    def feedback_until(self, condition: Callable[[Any], bool], timeout: float = 60.0) -> list[Any]:
         """All feedback up to the first that fulfils the condition."""
         seen: list[Any] = []
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import signal
 import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +15,15 @@ import pytest
 from builtin_interfaces.msg import Time
 from PIL import Image
 from planner_neighbours import run_until_stopped, scene_message
+from rclpy.action import ActionServer
+from rclpy.node import Node
 from ros2_run import PROCESS_TIMEOUT, Start, finish
 from tamp_interfaces.action import AchieveGoal
+from tamp_interfaces.srv import PlanToGoal
 
 from planner_node import commands
 from planner_node.client import PlannerClient, PlannerUnavailableError
+from planner_node.node import PlannerNode
 
 PACKAGE = "planner_node"
 GOAL = "red on green, blue on red"
@@ -159,6 +165,29 @@ def test_the_node_stops_on_signals(ros_context: Any, start: Start, number: int) 
         assert finish(node)[0] == 0
         with pytest.raises(PlannerUnavailableError):
             client.plan(GOAL, timeout=0.5)
+
+
+@pytest.mark.parametrize("ask", [PlannerClient.plan, PlannerClient.start])
+def test_a_request_to_a_planner_that_goes_away_is_sent_to_the_next(
+    ros_context: Any, ask: Callable[..., Any]
+) -> None:
+    """As a node that stops is still seen for a moment, this one is seen and never answers."""
+    old = Node("old_planner", context=ros_context.context)
+    old.create_service(PlanToGoal, "plan_to_goal", lambda _request, response: response)
+    actions = ActionServer(old, AchieveGoal, "achieve_goal", lambda _goal: AchieveGoal.Result())
+    with (
+        PlannerClient(ros_context.context) as client,
+        ThreadPoolExecutor(1) as pool,
+    ):
+        answer = pool.submit(ask, client, GOAL, timeout=PROCESS_TIMEOUT)
+        ros_context.wait_until(lambda: old.count_clients("plan_to_goal"), what="discovery")
+        time.sleep(1.0)
+        assert not answer.done()
+        actions.destroy()
+        old.destroy_node()
+        time.sleep(1.0)
+        ros_context.add(PlannerNode(context=ros_context.context))
+        answer.result(PROCESS_TIMEOUT)
 
 
 def test_the_node_stops_while_the_arm_moves_and_can_be_started_again(

@@ -16,6 +16,7 @@ import queue
 import threading
 import time
 import uuid
+from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Final
 
@@ -29,9 +30,12 @@ from sensor_msgs.msg import Image
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.srv import PlanToGoal
 from tamp_runtime.spinning import NodeThread
+from unique_identifier_msgs.msg import UUID
 
 #: The planner counts as gone when it has not been seen for this long [s].
 GONE_SECONDS: Final = 2.0
+#: How often to look whether the planner is still there while it has not answered [s].
+POLL_SECONDS: Final = 0.1
 
 
 class PlannerUnavailableError(RuntimeError):
@@ -71,21 +75,19 @@ class PlannerClient:
         Raises:
             PlannerUnavailableError: no answer within ``timeout`` [s].
         """
-        deadline = time.monotonic() + timeout
-        if not self._plan_client.wait_for_service(timeout_sec=timeout):
-            raise _unavailable(timeout)
         request = PlanToGoal.Request(
             goal=goal,
             goal_image=goal_image or Image(),
             goal_segmentation=goal_segmentation or Image(),
             execute=execute,
         )
-        future = self._plan_client.call_async(request)
-        try:
-            return self._wait(future, deadline - time.monotonic(), timeout)
-        except PlannerUnavailableError:
-            self._plan_client.remove_pending_request(future)
-            raise
+        client = self._plan_client
+        return _ask(
+            lambda: client.call_async(request),
+            client.service_is_ready,
+            client.wait_for_service,
+            timeout,
+        )
 
     def start(
         self,
@@ -100,21 +102,23 @@ class PlannerClient:
         Raises:
             PlannerUnavailableError: no answer within ``timeout`` [s].
         """
-        deadline = time.monotonic() + timeout
-        if not self._goal_client.wait_for_server(timeout_sec=timeout):
-            raise _unavailable(timeout)
         feedback: queue.SimpleQueue[AchieveGoal.Feedback] = queue.SimpleQueue()
         self._feedback = feedback
         self._result, self._gone_since = None, None
-        future = self._goal_client.send_goal_async(
-            AchieveGoal.Goal(
-                goal=goal,
-                goal_image=goal_image or Image(),
-                goal_segmentation=goal_segmentation or Image(),
-            ),
-            feedback_callback=lambda message: feedback.put(message.feedback),
+        request = AchieveGoal.Goal(
+            goal=goal,
+            goal_image=goal_image or Image(),
+            goal_segmentation=goal_segmentation or Image(),
         )
-        handle = self._wait(future, deadline - time.monotonic(), timeout)
+        client, identity = self._goal_client, UUID(uuid=list(uuid.uuid4().bytes))
+        handle = _ask(
+            lambda: client.send_goal_async(
+                request, lambda message: feedback.put(message.feedback), identity
+            ),
+            client.server_is_ready,
+            client.wait_for_server,
+            timeout,
+        )
         if not handle.accepted:
             raise PlannerUnavailableError("planner_node refused the goal; its log says why")
         self._handle = handle
@@ -153,7 +157,11 @@ class PlannerClient:
         """
         self._started()
         assert self._handle is not None
-        self._wait(self._handle.cancel_goal_async(), timeout, timeout)
+        future = self._handle.cancel_goal_async()
+        arrived = threading.Event()
+        future.add_done_callback(lambda _future: arrived.set())
+        if not arrived.wait(timeout):
+            raise _unavailable(timeout)
 
     def result(self, timeout: float) -> AchieveGoal.Result:
         """Waits for the result, whatever its status.
@@ -199,13 +207,28 @@ class PlannerClient:
             raise RuntimeError("no goal was started; call start() first")
         return self._result
 
-    @staticmethod
-    def _wait(future: Future, remaining: float, timeout: float) -> Any:
+
+def _ask(
+    send: Callable[[], Future],
+    is_ready: Callable[[], bool],
+    wait_for: Callable[..., bool],
+    timeout: float,
+) -> Any:
+    """The answer to a request, which is sent again if the planner goes away before it answers.
+
+    A node that stops may still be seen for a moment; a request it gets then is lost.
+    """
+    deadline = time.monotonic() + timeout
+    while (left := deadline - time.monotonic()) > 0.0 and wait_for(timeout_sec=left):
         arrived = threading.Event()
-        future.add_done_callback(lambda _future: arrived.set())
-        if not arrived.wait(max(0.0, remaining)):
-            raise _unavailable(timeout)
-        return future.result()
+        future = send()
+        future.add_done_callback(lambda _future, arrived=arrived: arrived.set())
+        while not arrived.wait(POLL_SECONDS) and is_ready() and time.monotonic() < deadline:
+            pass
+        if arrived.is_set():
+            return future.result()
+        future.cancel()
+    raise _unavailable(timeout)
 
 
 def _unavailable(timeout: float) -> PlannerUnavailableError:
