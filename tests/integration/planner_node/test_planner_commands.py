@@ -71,7 +71,9 @@ def test_an_achieved_goal_shows_its_stages(make_bench: Any, start: Start) -> Non
     assert code == 0
     first_words = [line.split()[0] for line in stdout.splitlines()]
     stages = [word for word in dict.fromkeys(first_words) if word.isalpha()]
-    assert stages[:6] == ["perceive", "plan", "optimise", "start", "execute", "confirm"]
+    assert stages[:5] == ["perceive", "plan", "optimise", "start", "execute"]
+    # rclpy's action client drops feedback that arrives after the result, so it may end earlier.
+    assert stages[5] in ("confirm", "the")
     assert "the camera confirms" in stdout
     assert bench.world.stacks[1] == ("green_box", "red_box", "blue_box")
 

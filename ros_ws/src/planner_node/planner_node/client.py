@@ -112,8 +112,10 @@ class PlannerClient:
         )
         client, identity = self._goal_client, UUID(uuid=list(uuid.uuid4().bytes))
         handle = _ask(
-            lambda: client.send_goal_async(
-                request, lambda message: feedback.put(message.feedback), identity
+            lambda: self._thread.call(
+                lambda: client.send_goal_async(
+                    request, lambda message: feedback.put(message.feedback), identity
+                )
             ),
             client.server_is_ready,
             client.wait_for_server,
@@ -122,7 +124,7 @@ class PlannerClient:
         if not handle.accepted:
             raise PlannerUnavailableError("planner_node refused the goal; its log says why")
         self._handle = handle
-        self._result = handle.get_result_async()
+        self._result = self._thread.call(handle.get_result_async)
 
     def is_done(self) -> bool:
         """Whether the result is there.
@@ -157,7 +159,7 @@ class PlannerClient:
         """
         self._started()
         assert self._handle is not None
-        future = self._handle.cancel_goal_async()
+        future = self._thread.call(self._handle.cancel_goal_async)
         arrived = threading.Event()
         future.add_done_callback(lambda _future: arrived.set())
         if not arrived.wait(timeout):

@@ -35,8 +35,6 @@ EXIT_CANCELLED: Final = 130
 ANSWER_TIMEOUT: Final = 10.0
 #: How long a cancelled motion may take until it rests [s].
 CANCEL_TIMEOUT: Final = 60.0
-#: How long feedback may take to arrive after the result [s].
-FEEDBACK_GRACE: Final = 0.2
 
 
 def plan_to_goal(arguments: Sequence[str] | None = None) -> int:
@@ -171,9 +169,6 @@ def _follow(planner: PlannerClient, timeout: float) -> bool:
             if feedback is not None:
                 printer.show(feedback)
             elif planner.is_done():
-                # Feedback travels by itself; the last may arrive after the result.
-                while feedback := planner.next_feedback(timeout=FEEDBACK_GRACE):
-                    printer.show(feedback)
                 return True
         return False
     finally:

@@ -4,9 +4,17 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Final, TypeVar
 
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
+
+#: A callback that takes longer than this blocks the thread [s].
+CALL_TIMEOUT: Final = 10.0
+
+Result = TypeVar("Result")
 
 
 class NodeThread:
@@ -18,6 +26,26 @@ class NodeThread:
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._spin, name=node.get_name(), daemon=True)
         self._thread.start()
+
+    def call(self, function: Callable[[], Result]) -> Result:
+        """Runs a function in the node's thread, between callbacks, and returns what it returns.
+
+        rclpy's action client needs that: an answer that another thread receives before
+        ``send_goal_async`` has returned is thrown away.
+
+        Raises:
+            TimeoutError: the thread does not get to it; is the context shut down?
+        """
+        result: Future[Result] = Future()
+
+        def run() -> None:
+            try:
+                result.set_result(function())
+            except Exception as error:
+                result.set_exception(error)
+
+        self._executor.create_task(run)
+        return result.result(CALL_TIMEOUT)
 
     def stop(self) -> None:
         """Stops spinning; no callback runs afterwards, and the node can be destroyed."""
