@@ -3,20 +3,27 @@
 
 from __future__ import annotations
 
+import faulthandler
 import os
 import sys
+import threading
+import time
 import traceback
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 
 import rclpy
+from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 #: After how long a thread that computes passes the interpreter on to one that waits for it [s].
 SWITCH_INTERVAL = 5e-4
+
+#: How long the shutdown of a node may take before its process is ended [s].
+STOP_SECONDS = 5.0
 
 
 def prepare_process() -> None:
@@ -42,6 +49,7 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
     prepare_process()
     # rclpy's own handlers of SIGINT and SIGTERM wake the executor; Python's wait for a message.
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.ALL)
+    threading.Thread(target=_end_in_time, args=[rclpy.get_default_context()], daemon=True).start()
     executor = MultiThreadedExecutor(num_threads=threads)
     node: Node | None = None
     try:
@@ -68,6 +76,16 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
         if node is not None:
             node.destroy_node()
     return 0
+
+
+def _end_in_time(context: Context) -> None:
+    """Ends a process that does not get through its own shutdown, and shows where it hangs."""
+    while context.ok():
+        time.sleep(0.2)
+    time.sleep(STOP_SECONDS)
+    print(f"not stopped after {STOP_SECONDS:g} s, ended; please report:", file=sys.stderr)
+    faulthandler.dump_traceback(all_threads=True)
+    os._exit(0)
 
 
 def _spin(executor: MultiThreadedExecutor, node: Node) -> None:
