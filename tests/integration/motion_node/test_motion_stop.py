@@ -40,6 +40,7 @@ def test_before_the_motion_is_optimised(bench: Bench) -> None:
 
 
 def test_with_an_empty_hand_on_its_way(bench: Bench) -> None:
+    bench.arm.speed = 1.0  # time to hear of the stop before the block is held
     bench.start()
     bench.planner.ask(plan_message("a", (0, 2), (1, 2)))
     bench.wait_for_phase("a", "pick", 0)
@@ -92,6 +93,7 @@ def test_on_the_way_home(bench: Bench) -> None:
 
 
 def test_twice_is_once(bench: Bench) -> None:
+    bench.arm.speed = 1.0  # time to hear of the stop before the block is held
     bench.start()
     bench.planner.ask(plan_message("a", (0, 2)))
     bench.wait_for_phase("a", "pick", 0)
@@ -130,6 +132,7 @@ def test_what_has_ended_repeats_its_end(bench: Bench) -> None:
 
 
 def test_without_a_name_whatever_runs_is_stopped(bench: Bench) -> None:
+    bench.arm.speed = 1.0  # time to hear of the stop before the block is held
     bench.start()
     bench.planner.ask(plan_message("a", (0, 2)))
     bench.wait_for_phase("a", "pick", 0)
