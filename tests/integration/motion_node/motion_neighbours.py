@@ -168,11 +168,11 @@ class Bench:
         )
         return node
 
-    def wait(self, condition: Callable[[], Any], what: str, timeout: float = 120.0) -> None:
-        self.ros.wait_until(condition, timeout, what)
+    def wait(self, condition: Callable[[], Any], what: str) -> None:
+        self.ros.wait_until(condition, what=what)
 
-    def end(self, plan_id: str, timeout: float = 120.0) -> MotionStatus:
-        self.wait(lambda: self.planner.end(plan_id), f"the end of {plan_id}", timeout)
+    def end(self, plan_id: str) -> MotionStatus:
+        self.wait(lambda: self.planner.end(plan_id), f"the end of {plan_id}")
         end = self.planner.end(plan_id)
         assert end is not None
         return end

@@ -58,6 +58,8 @@ def test_nodes_and_clients_work_as_processes_and_stop_cleanly(
     assert done.returncode == 0, done.stdout + done.stderr
     graph.check()
     assert graph.stop_all() == dict.fromkeys(NODES, 0)
+    for log in (tmp_path / "logs").iterdir():
+        assert "not stopped after" not in log.read_text(), log.read_text()
     for node in NODES:
         assert "Traceback" not in (tmp_path / "logs" / f"{node}.log").read_text()
 

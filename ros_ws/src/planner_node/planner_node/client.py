@@ -13,7 +13,6 @@ with PlannerClient() as planner:
 from __future__ import annotations
 
 import queue
-import threading
 import time
 import uuid
 from collections.abc import Callable
@@ -29,13 +28,12 @@ from rclpy.task import Future
 from sensor_msgs.msg import Image
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.srv import PlanToGoal
+from tamp_runtime.asking import arrival, ask
 from tamp_runtime.spinning import NodeThread
 from unique_identifier_msgs.msg import UUID
 
 #: The planner counts as gone when it has not been seen for this long [s].
 GONE_SECONDS: Final = 2.0
-#: How often to look whether the planner is still there while it has not answered [s].
-POLL_SECONDS: Final = 0.1
 
 
 class PlannerUnavailableError(RuntimeError):
@@ -159,10 +157,7 @@ class PlannerClient:
         """
         self._started()
         assert self._handle is not None
-        future = self._thread.call(self._handle.cancel_goal_async)
-        arrived = threading.Event()
-        future.add_done_callback(lambda _future: arrived.set())
-        if not arrived.wait(timeout):
+        if not arrival(self._thread.call(self._handle.cancel_goal_async)).wait(timeout):
             raise _unavailable(timeout)
 
     def result(self, timeout: float) -> AchieveGoal.Result:
@@ -173,9 +168,8 @@ class PlannerClient:
             PlannerUnavailableError: the planner went away.
         """
         deadline = time.monotonic() + timeout
-        arrived = threading.Event()
         future = self._started()
-        future.add_done_callback(lambda _future: arrived.set())
+        arrived = arrival(future)
         while not self.is_done():
             if time.monotonic() >= deadline:
                 raise TimeoutError(f"the goal is not done after {timeout:g} s")
@@ -216,21 +210,10 @@ def _ask(
     wait_for: Callable[..., bool],
     timeout: float,
 ) -> Any:
-    """The answer to a request, which is sent again if the planner goes away before it answers.
-
-    A node that stops may still be seen for a moment; a request it gets then is lost.
-    """
-    deadline = time.monotonic() + timeout
-    while (left := deadline - time.monotonic()) > 0.0 and wait_for(timeout_sec=left):
-        arrived = threading.Event()
-        future = send()
-        future.add_done_callback(lambda _future, arrived=arrived: arrived.set())
-        while not arrived.wait(POLL_SECONDS) and is_ready() and time.monotonic() < deadline:
-            pass
-        if arrived.is_set():
-            return future.result()
-        future.cancel()
-    raise _unavailable(timeout)
+    try:
+        return ask(send, is_ready, wait_for, timeout)
+    except TimeoutError:
+        raise _unavailable(timeout) from None
 
 
 def _unavailable(timeout: float) -> PlannerUnavailableError:

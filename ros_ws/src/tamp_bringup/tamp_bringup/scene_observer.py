@@ -13,6 +13,7 @@ import rclpy
 from sensor_msgs.msg import Image
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_interfaces.srv import ResetScene
+from tamp_runtime.asking import ask
 from tamp_runtime.conversions import graph_from_message
 from tamp_runtime.images import array_from_image
 from tamp_runtime.qos import LATCHED, NEWEST
@@ -75,16 +76,19 @@ class SceneObserver:
         request = ResetScene.Request(
             seed=seed, blocks=blocks, layout=format_layout(layout) if layout else []
         )
-        if not self._reset.wait_for_service(timeout_sec=timeout):
-            raise SimulationError(
-                "sim_node does not answer; start it with: ros2 run sim_node sim_node"
+        client = self._reset
+        try:
+            response = ask(
+                lambda: client.call_async(request),
+                client.service_is_ready,
+                client.wait_for_service,
+                timeout,
             )
-        future = self._reset.call_async(request)
-        answered = threading.Event()
-        future.add_done_callback(lambda _: answered.set())
-        if not answered.wait(timeout):
-            raise SimulationError(f"sim_node did not reset the scene within {timeout:g} s")
-        response = future.result()
+        except TimeoutError:
+            raise SimulationError(
+                f"sim_node did not reset the scene within {timeout:g} s; if it is not running, "
+                "start it with: ros2 run sim_node sim_node"
+            ) from None
         if not response.success:
             raise SimulationError(response.message)
         return self.fresh_truth(timeout)
