@@ -18,7 +18,7 @@ from statistics import median
 import rclpy
 from rclpy.signals import SignalHandlerOptions
 from results_file import Row, print_rows, quick, wilson_interval, write_result
-from tamp_runtime.runner import prepare_process
+from tamp_runtime.node_process import prepare_process
 from tqdm import tqdm
 
 from planner_node.client import PlannerClient

@@ -26,9 +26,8 @@ from tqdm import tqdm
 from perception_node.camera_model import PinholeCamera
 from perception_node.mask_centroid import MaskCentroid
 from perception_node.perception import Perceived, Perception
-from perception_node.status import Status
 from perception_node.weights import DEFAULT_WEIGHTS, load_weights
-from scene_graph import Relation, format_stacks, up_relations
+from scene_graph import GraphStatus, Relation, format_stacks, up_relations
 from sim_node.layouts import random_layout
 from sim_node.scene import CameraConfig, SceneConfig
 from sim_node.world import World
@@ -58,7 +57,7 @@ class Tally:
 
     def add(self, perceived: Perceived, truth: frozenset[Relation], what: str) -> None:
         right = perceived.graph.relations == truth
-        confident = perceived.status is Status.CONFIDENT
+        confident = perceived.status is GraphStatus.CONFIDENT
         self.right.append(right)
         self.confident.append(confident)
         self.wrong_and_confident += confident and not right

@@ -16,7 +16,7 @@ from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
 from ros2_run import Process, Start, ros2_run
-from tamp_runtime.runner import prepare_process
+from tamp_runtime.node_process import prepare_process
 
 prepare_process()
 os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")

@@ -11,7 +11,7 @@ import sys
 STUCK = """
 import sys, time
 from rclpy.node import Node
-from tamp_runtime.runner import run_node
+from tamp_runtime.node_process import run_node
 
 class Stuck(Node):
     def __init__(self):

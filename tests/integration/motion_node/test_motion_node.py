@@ -11,10 +11,10 @@ import pytest
 from motion_neighbours import HOME, Bench, plan_message, scene_message
 from rclpy.parameter import Parameter
 from tamp_interfaces.msg import MotionStatus, SymbolicPlan
+from tamp_runtime.motion_report import MotionReason, MotionState
 
 from motion_node.node import MotionNode
 from motion_node.optimiser import MotionOptimiser
-from motion_node.report import Reason, State
 
 
 @pytest.fixture
@@ -23,7 +23,7 @@ def bench(ros_context: Any) -> Bench:
 
 
 def test_states_and_reasons_are_those_of_the_message() -> None:
-    for value in (*State, *Reason):
+    for value in (*MotionState, *MotionReason):
         assert getattr(MotionStatus, value.name) == value
 
 

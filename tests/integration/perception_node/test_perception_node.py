@@ -20,13 +20,12 @@ from ros2_run import PROCESS_TIMEOUT, Start, finish
 from sensor_msgs.msg import CameraInfo, Image
 from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import ImageToSceneGraph
-from tamp_runtime.conversions import graph_from_message
+from tamp_runtime.messages.scene_graph import graph_from_message
 from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
 from visualization_msgs.msg import Marker, MarkerArray
 
 from perception_node.node import PerceptionNode
-from perception_node.status import Status
-from scene_graph import Stacks, up_relations
+from scene_graph import GraphStatus, Stacks, up_relations
 from sim_node.camera import Frame
 from sim_node.conversions import camera_messages, extrinsics_message
 from sim_node.scene import CameraConfig
@@ -238,7 +237,7 @@ def test_a_goal_image_is_interpreted(
     image, _, segmentation, _ = camera.messages(frames[OTHER])
     request = ImageToSceneGraph.Request(image=image, segmentation=segmentation)
     graph = graph_from_message(ask(request))
-    assert graph.bases == ()  # no camera is known yet: left-relations instead
+    assert graph.places == ()  # no camera is known yet: left-relations instead
     camera.calibrate_and_show(frames[TOWERS])
     answer = ask(request)
     assert answer.status == SceneGraph.CONFIDENT
@@ -270,7 +269,7 @@ def test_parameters_are_checked_and_take_effect(
 
 
 def test_the_verdicts_have_the_numbers_of_the_interface() -> None:
-    for status in Status:
+    for status in GraphStatus:
         assert getattr(SceneGraph, status.name) == status.value
 
 

@@ -15,7 +15,7 @@ from rclpy.time import Time
 from std_msgs.msg import Header
 from tamp_interfaces.msg import Base, MotionStatus, SceneGraph, SceneObject, SymbolicPlan
 from tamp_interfaces.srv import ImageToSceneGraph
-from tamp_runtime.conversions import relations_to_messages
+from tamp_runtime.messages.scene_graph import relations_to_messages
 from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE
 
 from scene_graph import Move, Stacks, apply_move, up_relations

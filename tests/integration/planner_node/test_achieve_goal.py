@@ -22,7 +22,7 @@ from planner_neighbours import (
 from std_msgs.msg import Header
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.msg import MotionStatus, SceneGraph, SymbolicPlan
-from tamp_runtime.images import image_from_array
+from tamp_runtime.messages.images import image_from_array
 
 Status = AchieveGoal.Result
 Stage = AchieveGoal.Feedback

@@ -15,7 +15,7 @@ from std_msgs.msg import Header
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.msg import MotionStatus, Relation, SceneGraph
 from tamp_interfaces.srv import PlanToGoal
-from tamp_runtime.images import image_from_array
+from tamp_runtime.messages.images import image_from_array
 
 from planner_node import errors
 from planner_node.client import PlannerClient

@@ -16,8 +16,8 @@ from sensor_msgs.msg import CameraInfo, Image, JointState
 from std_msgs.msg import String
 from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import ResetScene
-from tamp_runtime.conversions import graph_from_message
-from tamp_runtime.images import array_from_image
+from tamp_runtime.messages.images import array_from_image
+from tamp_runtime.messages.scene_graph import graph_from_message
 from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 

@@ -10,7 +10,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.msg import SceneGraph
-from tamp_runtime.conversions import graph_from_message
+from tamp_runtime.messages.scene_graph import graph_from_message
 from tamp_runtime.qos import LATCHED
 
 from motion_node.node import MotionNode

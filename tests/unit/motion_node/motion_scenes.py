@@ -10,8 +10,8 @@ import numpy as np
 from scene_graph import (
     BOX,
     COLORS,
-    Base,
     Move,
+    Place,
     SceneGraph,
     SceneObject,
     all_moves,
@@ -59,7 +59,7 @@ def scene(
     return SceneGraph(
         tuple(objects),
         up_relations(tuple(stacks)),
-        tuple(Base(index, (x, y, 0.0)) for index, (x, y) in enumerate(bases)),
+        tuple(Place(index, (x, y, 0.0)) for index, (x, y) in enumerate(bases)),
     )
 
 

@@ -23,7 +23,7 @@ OPEN = np.array([0.04, 0.04])
 
 
 def test_a_place_out_of_reach_is_a_matter_of_the_pose(optimiser: MotionOptimiser) -> None:
-    graph = scene((1, 0, 0), bases=[(0.5, -0.15), (0.5, 0.0), (1.1, 0.15)])
+    graph = scene((1, 0, 0), places=[(0.5, -0.15), (0.5, 0.0), (1.1, 0.15)])
     with pytest.raises(InfeasibleError) as caught:
         optimiser.solve(graph, [Move(0, 1), Move(1, 2)], HOME, OPEN)
     error = caught.value
@@ -48,7 +48,7 @@ def test_a_block_too_wide_for_the_fingers_is_a_matter_of_the_pose(
 
 
 def test_a_stack_too_near_to_its_neighbour_names_both(optimiser: MotionOptimiser) -> None:
-    graph = scene((1, 5, 0), bases=[(0.5, -0.055), (0.5, 0.0), (0.5, 0.15)])
+    graph = scene((1, 5, 0), places=[(0.5, -0.055), (0.5, 0.0), (0.5, 0.15)])
     with pytest.raises(InfeasibleError) as caught:
         optimiser.solve(graph, [Move(0, 2)], HOME, OPEN)
     error = caught.value
@@ -134,7 +134,7 @@ def test_optimising_stops_on_request(optimiser: MotionOptimiser) -> None:
 def test_places_may_be_elsewhere(
     optimiser: MotionOptimiser, bases: list[tuple[float, float]]
 ) -> None:
-    graph = scene((2, 1, 1, 1)[: len(bases)], np.random.default_rng(7), bases=bases)
+    graph = scene((2, 1, 1, 1)[: len(bases)], np.random.default_rng(7), places=bases)
     motion = optimiser.solve(graph, [Move(0, 1), Move(1, 0)], HOME, OPEN)
     assert motion.trajectory.duration > 5.0
 
@@ -147,9 +147,9 @@ def test_the_table_may_be_at_another_height(optimiser: MotionOptimiser) -> None:
             replace(o, position_world=tuple(np.add(o.position_world, (0, 0, 0.1))))
             for o in graph.objects
         ),
-        bases=tuple(
+        places=tuple(
             replace(b, position_world=tuple(np.add(b.position_world, (0, 0, 0.1))))
-            for b in graph.bases
+            for b in graph.places
         ),
     )
     motion = optimiser.solve(raised, [Move(0, 1)], HOME, OPEN)
@@ -160,4 +160,4 @@ def test_the_table_may_be_at_another_height(optimiser: MotionOptimiser) -> None:
 
 
 def test_the_scenes_bases_are_the_defaults_of_these_tests() -> None:
-    assert [b.position_world[:2] for b in scene((1, 1, 1)).bases] == list(BASES)
+    assert [b.position_world[:2] for b in scene((1, 1, 1)).places] == list(BASES)

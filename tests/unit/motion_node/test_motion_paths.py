@@ -35,7 +35,7 @@ def judge(
     for move in moves:
         stacks = apply_move(stacks, move)
     moved = {phase.object_name for phase in motion.phases}
-    for stack, base in zip(stacks, graph.bases):
+    for stack, base in zip(stacks, graph.places):
         for level, name in enumerate(stack):
             position = result.positions[name]
             assert position[2] == pytest.approx((level + 0.5) * EDGE, abs=2e-3), name

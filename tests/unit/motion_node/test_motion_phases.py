@@ -149,14 +149,14 @@ def test_moves_that_do_not_fit_are_refused(
 def test_scenes_that_make_no_sense_are_refused() -> None:
     graph = scene((2, 0, 0))
     for broken, sentence in (
-        (replace(graph, bases=()), "no bases"),
+        (replace(graph, places=()), "no bases"),
         (replace(graph, objects=graph.objects[:1]), "green_box is missing"),
         (
             replace(graph, relations=graph.relations | {Relation("red_box", "up", "stack1")}),
             "inconsistent",
         ),
         (replace(graph, relations=frozenset()), "stands on nothing"),
-        (replace(graph, bases=graph.bases[1:]), "not numbered from 0"),
+        (replace(graph, places=graph.places[1:]), "not numbered from 0"),
     ):
         with pytest.raises(InvalidPlanError, match=sentence):
             phases_of(broken, [(0, 1)])

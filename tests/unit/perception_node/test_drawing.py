@@ -5,8 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception_node.drawing import DRAWING_WIDTH, draw_scene_graph
-from perception_node.status import Status
-from scene_graph import Relation, SceneGraph, SceneObject
+from scene_graph import GraphStatus, Relation, SceneGraph, SceneObject
 
 
 def scene() -> tuple[NDArray[np.uint8], NDArray[np.uint16], SceneGraph]:
@@ -32,7 +31,7 @@ def scene() -> tuple[NDArray[np.uint8], NDArray[np.uint16], SceneGraph]:
 def test_blocks_and_names_are_drawn_and_the_input_is_left_alone() -> None:
     rgb, labels, graph = scene()
     before = rgb.copy()
-    drawing = draw_scene_graph(rgb, labels, graph, Status.CONFIDENT, "")
+    drawing = draw_scene_graph(rgb, labels, graph, GraphStatus.CONFIDENT, "")
     assert drawing.shape == (DRAWING_WIDTH, DRAWING_WIDTH, 3) and drawing.dtype == np.uint8
     assert drawing.nbytes < 500_000  # Fast DDS drops larger best-effort messages
     assert np.array_equal(rgb, before)
@@ -44,8 +43,8 @@ def test_blocks_and_names_are_drawn_and_the_input_is_left_alone() -> None:
 
 def test_a_long_message_is_wrapped_into_the_image() -> None:
     rgb, labels, graph = scene()
-    plain = draw_scene_graph(rgb, labels, graph, Status.OCCLUDED, "")
-    drawing = draw_scene_graph(rgb, labels, graph, Status.OCCLUDED, "hidden by something " * 8)
+    plain = draw_scene_graph(rgb, labels, graph, GraphStatus.OCCLUDED, "")
+    drawing = draw_scene_graph(rgb, labels, graph, GraphStatus.OCCLUDED, "hidden by something " * 8)
     rows = np.flatnonzero((drawing != plain).any((1, 2)))
     assert rows[0] > 15 and np.ptp(rows) > 28
     columns = np.flatnonzero((drawing != plain).any((0, 2)))
@@ -55,4 +54,4 @@ def test_a_long_message_is_wrapped_into_the_image() -> None:
 def test_large_images_are_not_enlarged() -> None:
     rgb, labels = np.zeros((480, 640, 3), np.uint8), np.zeros((480, 640), np.uint16)
     empty = SceneGraph((), frozenset())
-    assert draw_scene_graph(rgb, labels, empty, Status.NO_OBJECTS, "none").shape == rgb.shape
+    assert draw_scene_graph(rgb, labels, empty, GraphStatus.NO_OBJECTS, "none").shape == rgb.shape

@@ -10,9 +10,8 @@ import pytest
 
 from perception_node.camera_model import PinholeCamera
 from perception_node.perception import Perceived, Perception, PerceptionConfig
-from perception_node.status import Status
 from perception_node.weights import load_weights
-from scene_graph import LEFT, Relation, Stacks, left_relations, up_relations
+from scene_graph import LEFT, GraphStatus, Relation, Stacks, left_relations, up_relations
 from sim_node.camera import Frame
 from sim_node.layouts import random_layout
 from sim_node.world import World
@@ -77,7 +76,7 @@ def test_the_graph_of_a_random_scene_is_right_and_confident(
     perceived = perceive(world)
     assert perceived.graph.relations == up_relations(layout)
     assert perceived.graph.stacks() == layout
-    assert perceived.status is Status.CONFIDENT, perceived.message
+    assert perceived.status is GraphStatus.CONFIDENT, perceived.message
     assert perceived.message == ""
 
 
@@ -118,7 +117,7 @@ def test_a_goal_image_needs_no_depth(world: World) -> None:
     world.reset(TOWERS)
     frame = world.render()
     perceived = PERCEPTION.perceive(frame.rgb, frame.labels, None, camera_of(world))
-    assert perceived.status is Status.CONFIDENT
+    assert perceived.status is GraphStatus.CONFIDENT
     assert perceived.graph.relations == up_relations(TOWERS)
 
 
@@ -126,7 +125,7 @@ def test_without_a_camera_there_are_left_relations_and_no_bases(world: World) ->
     world.reset(TOWERS)
     frame = world.render()
     graph = PERCEPTION.perceive(frame.rgb, frame.labels).graph
-    assert graph.bases == ()
+    assert graph.places == ()
     assert {r for r in graph.relations if r.predicate == LEFT} == left_relations(TOWERS)
     assert Relation("green_box", "up", "blue_box") in graph.relations
     assert not any(relation.object.startswith("stack") for relation in graph.relations)
@@ -139,7 +138,7 @@ def test_blocks_of_one_name_are_numbered_and_do_no_harm(world: World) -> None:
     rgb[frame.labels > 0] = (180, 20, 20)
     perceived = perceive(world, replace(frame, rgb=rgb))
     assert perceived.graph.stacks() == (("red_box",), ("red_box_2",), ("red_box_3",))
-    assert perceived.status is Status.CONFIDENT
+    assert perceived.status is GraphStatus.CONFIDENT
 
 
 def test_a_camera_of_another_size_reads_the_same(world: World) -> None:
@@ -155,8 +154,8 @@ def test_an_empty_table_has_no_objects(world: World) -> None:
     nothing = replace(frame, labels=np.zeros_like(frame.labels))
     bare = replace(nothing, depth=np.full_like(frame.depth, 3.0))
     perceived = perceive(world, bare)
-    assert perceived.status is Status.NO_OBJECTS
-    assert perceived.graph.objects == () and len(perceived.graph.bases) == 3
+    assert perceived.status is GraphStatus.NO_OBJECTS
+    assert perceived.graph.objects == () and len(perceived.graph.places) == 3
     assert "put blocks on the table" in perceived.message
 
 
@@ -170,7 +169,7 @@ class TestTheArm:
         confidence = perceive(world).graph.confidence
         move_hand(world, (0.5, (-0.15, 0.0, 0.15)[place], height))
         perceived = perceive(world)
-        assert perceived.status is Status.OCCLUDED
+        assert perceived.status is GraphStatus.OCCLUDED
         assert "not a block" in perceived.message
         assert perceived.graph.confidence < confidence
 
@@ -185,12 +184,12 @@ class TestTheArm:
             move_hand(world, (x, y, z))
             frame = world.render()
             hidden = np.count_nonzero((clear > 0) & (frame.labels != clear))
-            assert hidden == 0 or perceive(world, frame).status is not Status.CONFIDENT
+            assert hidden == 0 or perceive(world, frame).status is not GraphStatus.CONFIDENT
 
     def test_behind_the_blocks_it_does_not_matter(self, world: World) -> None:
         world.reset(TOWERS)
         move_hand(world, (0.33, 0.0, 0.35))
-        assert perceive(world).status is Status.CONFIDENT
+        assert perceive(world).status is GraphStatus.CONFIDENT
 
 
 class TestBlocksThatDoNotStand:
@@ -198,14 +197,14 @@ class TestBlocksThatDoNotStand:
         world.reset(TOWERS)
         put(world, "green_box", (0.0, 0.0, 0.05))
         perceived = perceive(world)
-        assert perceived.status is Status.UNSTABLE
+        assert perceived.status is GraphStatus.UNSTABLE
         assert "green_box is in the air" in perceived.message
 
     def test_a_single_block_in_the_air(self, world: World) -> None:
         world.reset(TOWERS)
         put(world, "green_box", (0.0, 0.15, 0.1))
         perceived = perceive(world)
-        assert perceived.status is Status.UNSTABLE
+        assert perceived.status is GraphStatus.UNSTABLE
         assert "green_box" in perceived.message
 
     @pytest.mark.parametrize("axis", [0, 1])
@@ -213,25 +212,25 @@ class TestBlocksThatDoNotStand:
         world.reset(TOWERS)
         turn = (0.3, 0.0, 0.0) if axis == 0 else (0.0, 0.3, 0.0)
         put(world, "green_box", (0.0, 0.0, 0.006), turn)
-        assert perceive(world).status is not Status.CONFIDENT
+        assert perceive(world).status is not GraphStatus.CONFIDENT
 
     def test_a_block_between_two_places(self, world: World) -> None:
         world.reset((("red_box",), (), ("blue_box",)))
         put(world, "blue_box", (0.0, -0.075, 0.0))
         perceived = perceive(world)
-        assert perceived.status is Status.UNSTABLE
+        assert perceived.status is GraphStatus.UNSTABLE
         assert "blue_box stands 7" in perceived.message
 
     def test_a_block_in_front_of_its_place(self, world: World) -> None:
         world.reset((("red_box",), (), ("blue_box",)))
         put(world, "blue_box", (0.1, 0.0, 0.0))
-        assert perceive(world).status is Status.UNSTABLE
+        assert perceive(world).status is GraphStatus.UNSTABLE
 
     def test_more_stacks_than_places(self, world: World) -> None:
         world.reset((("red_box",), ("green_box", "yellow_box"), ("blue_box",)))
         put(world, "yellow_box", (0.0, 0.075, -0.045))
         perceived = perceive(world)
-        assert perceived.status is Status.UNSTABLE
+        assert perceived.status is GraphStatus.UNSTABLE
         assert "4 stacks" in perceived.message
 
 
@@ -243,7 +242,7 @@ class TestBadFrames:
 
     def check(self, world: World, frame: Frame, sentence: str) -> None:
         perceived = perceive(world, frame)
-        assert perceived.status is Status.BAD_IMAGE
+        assert perceived.status is GraphStatus.BAD_IMAGE
         assert sentence in perceived.message
         assert perceived.graph.objects == ()
 
@@ -271,7 +270,7 @@ class TestBadFrames:
         depth[np.random.default_rng(0).random(depth.shape) < 0.1] = value
         perceived = perceive(world, replace(frame, depth=depth))
         assert perceived.graph.stacks() == TOWERS
-        assert perceived.status is Status.CONFIDENT, perceived.message
+        assert perceived.status is GraphStatus.CONFIDENT, perceived.message
 
     def test_a_label_of_a_few_pixels_is_a_speck(self, world: World, frame: Frame) -> None:
         labels = frame.labels.copy()
@@ -283,7 +282,7 @@ class TestBadFrames:
         perception = Perception(PERCEPTION.module, PerceptionConfig(stack_positions=places))
         frame = world.render()
         perceived = perception.perceive(frame.rgb, frame.labels, frame.depth, camera_of(world))
-        assert perceived.status is Status.BAD_IMAGE
+        assert perceived.status is GraphStatus.BAD_IMAGE
         assert "stack_positions" in perceived.message
 
 
@@ -294,7 +293,7 @@ def test_damaged_masks_lower_the_confidence(world: World) -> None:
     rows, columns = np.nonzero(labels == world.label("purple_box"))
     labels[rows[columns > columns.mean()], columns[columns > columns.mean()]] = 0
     perceived = perceive(world, replace(frame, labels=labels))
-    assert perceived.status is not Status.CONFIDENT
+    assert perceived.status is not GraphStatus.CONFIDENT
 
 
 def test_a_graph_below_the_least_confidence_says_which_block(world: World) -> None:
@@ -302,6 +301,6 @@ def test_a_graph_below_the_least_confidence_says_which_block(world: World) -> No
     strict = Perception(PERCEPTION.module, PerceptionConfig(min_confidence=1.0))
     frame = world.render()
     perceived = strict.perceive(frame.rgb, frame.labels, frame.depth, camera_of(world))
-    assert perceived.status is Status.LOW_CONFIDENCE
+    assert perceived.status is GraphStatus.LOW_CONFIDENCE
     worst = min(perceived.graph.objects, key=lambda item: item.confidence)
     assert worst.name in perceived.message and "required: 1.00" in perceived.message

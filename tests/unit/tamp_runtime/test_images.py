@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
-from tamp_runtime.images import ImageError, array_from_image, image_from_array
+from tamp_runtime.messages.images import ImageError, array_from_image, image_from_array
 
 ARRAYS = {
     "rgb8": lambda rng, h, w: rng.integers(0, 256, (h, w, 3)).astype(np.uint8),

@@ -4,17 +4,15 @@
 from __future__ import annotations
 
 import numpy as np
-from builtin_interfaces.msg import Duration, Time
 from numpy.typing import NDArray
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Header
-from tamp_interfaces.msg import MotionStatus, SymbolicPlan
-from tamp_runtime.conversions import graph_from_message, moves_from_messages
+from tamp_interfaces.msg import SymbolicPlan
+from tamp_runtime.messages.scene_graph import graph_from_message, moves_from_messages
+from tamp_runtime.messages.stamps import duration_from_seconds
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from .errors import InvalidPlanError
 from .executive import Plan
-from .report import Report
 from .trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -34,26 +32,6 @@ def plan_from_message(message: SymbolicPlan) -> Plan:
     )
 
 
-def report_to_message(report: Report, stamp: Time) -> MotionStatus:
-    return MotionStatus(
-        header=Header(stamp=stamp),
-        plan_id=report.plan_id,
-        state=int(report.state),
-        reason=int(report.reason),
-        message=report.message,
-        bound=report.bound,
-        object_name=report.object_name,
-        constraint=report.constraint,
-        move=report.move,
-        moves_done=report.moves_done,
-        moves_total=report.moves_total,
-        phase=report.phase,
-        progress=float(min(max(report.progress, 0.0), 1.0)),
-        optimisation_seconds=float(report.optimisation_seconds),
-        duration=float(report.duration),
-    )
-
-
 def trajectory_to_message(trajectory: Trajectory) -> JointTrajectory:
     """The stamp stays zero, which asks the controller to start at once."""
     message = JointTrajectory(joint_names=list(trajectory.joint_names))
@@ -61,12 +39,11 @@ def trajectory_to_message(trajectory: Trajectory) -> JointTrajectory:
     for time, positions, velocities in zip(
         trajectory.times.tolist(), trajectory.positions.tolist(), trajectory.velocities.tolist()
     ):
-        nanoseconds = round(time * 1e9)
         points.append(
             JointTrajectoryPoint(
                 positions=positions,
                 velocities=velocities,
-                time_from_start=Duration(sec=nanoseconds // 10**9, nanosec=nanoseconds % 10**9),
+                time_from_start=duration_from_seconds(time),
             )
         )
     message.points = points
@@ -80,7 +57,3 @@ def joint_positions(message: JointState, names: tuple[str, ...]) -> Array | None
         return None
     positions = np.array([message.position[index[name]] for name in names])
     return positions if np.isfinite(positions).all() else None
-
-
-def seconds(stamp: Time) -> float:
-    return float(stamp.sec) + 1e-9 * float(stamp.nanosec)

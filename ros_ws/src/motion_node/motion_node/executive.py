@@ -13,6 +13,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
+from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
+
 from scene_graph import Move, SceneGraph
 
 from .arm_state import ArmStateBox
@@ -20,7 +22,6 @@ from .errors import CancelledError, InfeasibleError, InvalidPlanError
 from .following import ExecutionError, ExecutionSettings, Follower
 from .optimiser import Motion, MotionOptimiser
 from .phases import HOME, PICK
-from .report import Reason, Report, State
 from .trajectory import Trajectory
 
 
@@ -50,16 +51,16 @@ class Executive:
         optimiser: Callable[[], MotionOptimiser | None],
         arm: ArmStateBox,
         send: Callable[[Trajectory], None],
-        publish: Callable[[Report], None],
+        publish: Callable[[MotionReport], None],
         settings: Callable[[], ExecutionSettings],
     ) -> None:
         self._optimiser = optimiser
         self._arm, self._send, self._publish = arm, send, publish
         self._settings = settings
-        self._report = Report()
+        self._report = MotionReport()
 
     @property
-    def report(self) -> Report:
+    def report(self) -> MotionReport:
         """The newest report, progress included; any thread may ask."""
         return self._report
 
@@ -72,22 +73,22 @@ class Executive:
         Raises:
             Exception: a defect, which has been reported as such.
         """
-        self._report = Report(plan.plan_id, moves_total=len(plan.moves))
-        self._tell(State.OPTIMISING, f"optimising {len(plan.moves)} moves")
+        self._report = MotionReport(plan.plan_id, moves_total=len(plan.moves))
+        self._tell(MotionState.OPTIMISING, f"optimising {len(plan.moves)} moves")
         try:
             self._optimise_and_run(plan, stop)
         except CancelledError as error:
-            self._tell(State.CANCELLED, str(error))
+            self._tell(MotionState.CANCELLED, str(error))
         except InvalidPlanError as error:
             self._fail(
-                Reason.INVALID_PLAN,
+                MotionReason.INVALID_PLAN,
                 str(error),
                 object_name=error.object_name,
                 move=max(error.move, 0),
             )
         except InfeasibleError as error:
             self._fail(
-                Reason.INFEASIBLE,
+                MotionReason.INFEASIBLE,
                 str(error),
                 bound=error.bound,
                 object_name=error.object_name,
@@ -99,7 +100,8 @@ class Executive:
             self._fail(error.reason, str(error))
         except Exception as error:
             self._fail(
-                Reason.INTERNAL_ERROR, f"a defect: {error!r}; the node's log has the traceback"
+                MotionReason.INTERNAL_ERROR,
+                f"a defect: {error!r}; the node's log has the traceback",
             )
             raise
 
@@ -115,7 +117,7 @@ class Executive:
             plan.graph, plan.moves, arm, fingers, plan.object_names, stop.is_set
         )
         self._tell(
-            State.EXECUTING,
+            MotionState.EXECUTING,
             "setting out",
             optimisation_seconds=motion.seconds,
             duration=motion.trajectory.duration,
@@ -129,7 +131,7 @@ class Executive:
                 raise CancelledError("stopped on request before anything moved")
             if time.monotonic() > deadline:
                 raise ExecutionError(
-                    Reason.NO_JOINT_STATES,
+                    MotionReason.NO_JOINT_STATES,
                     "no usable robot_description arrives; is the arm's driver (or sim_node) "
                     "running?",
                 )
@@ -161,7 +163,7 @@ class Executive:
         if arrived:
             total = self._report.moves_total
             self._tell(
-                State.SUCCEEDED,
+                MotionState.SUCCEEDED,
                 "every move was carried out and the arm is home",
                 moves_done=total,
                 progress=1.0,
@@ -170,7 +172,8 @@ class Executive:
         self._go_home(motion, optimiser, follower, "stopped on request")
         done, total = self._report.moves_done, self._report.moves_total
         self._tell(
-            State.CANCELLED, f"stopped on request after {done} of {total} moves; the arm is home"
+            MotionState.CANCELLED,
+            f"stopped on request after {done} of {total} moves; the arm is home",
         )
 
     def _go_home(
@@ -180,7 +183,11 @@ class Executive:
         phase = follower.interval.phase
         moves_done = phase.move + 1 if follower.let_go else phase.move
         self._tell(
-            State.EXECUTING, f"{why}; going home", moves_done=moves_done, phase=HOME, object_name=""
+            MotionState.EXECUTING,
+            f"{why}; going home",
+            moves_done=moves_done,
+            phase=HOME,
+            object_name="",
         )
         state = follower.brake()
         home = optimiser.solve_way_home(
@@ -190,12 +197,12 @@ class Executive:
 
     # Reports
 
-    def _tell(self, state: State, message: str, **changes: Any) -> None:
+    def _tell(self, state: MotionState, message: str, **changes: Any) -> None:
         self._report = replace(self._report, state=state, message=message, **changes)
         self._publish(self._report)
 
-    def _fail(self, reason: Reason, message: str, **changes: Any) -> None:
-        self._tell(State.FAILED, message, reason=reason, **changes)
+    def _fail(self, reason: MotionReason, message: str, **changes: Any) -> None:
+        self._tell(MotionState.FAILED, message, reason=reason, **changes)
 
     def _tell_progress(self, trajectory: Trajectory, at: float) -> None:
         phase = trajectory.interval_at(at).phase
@@ -210,4 +217,4 @@ class Executive:
         )
         if (before.phase, before.move) != (self._report.phase, self._report.move):
             doing = {PICK: f"picking {phase.object_name}", HOME: "going home"}
-            self._tell(State.EXECUTING, doing.get(phase.kind, f"placing {phase.object_name}"))
+            self._tell(MotionState.EXECUTING, doing.get(phase.kind, f"placing {phase.object_name}"))

@@ -8,11 +8,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+from tamp_runtime.motion_report import MotionReason
 
 from .arm_state import ArmState, ArmStateBox
 from .errors import MotionError
 from .monitor import Monitor, MonitorSettings, Verdict
-from .report import Reason
 from .trajectory import Interval, Trajectory
 
 
@@ -46,7 +46,7 @@ class ExecutionError(MotionError):
     ``recoverable``: the arm obeys, so it can be sent home.
     """
 
-    def __init__(self, reason: Reason, message: str, recoverable: bool = False) -> None:
+    def __init__(self, reason: MotionReason, message: str, recoverable: bool = False) -> None:
         super().__init__(message)
         self.reason = reason
         self.recoverable = recoverable
@@ -114,7 +114,7 @@ class Follower:
 
     def _silence(self) -> ExecutionError:
         return ExecutionError(
-            Reason.NO_JOINT_STATES,
+            MotionReason.NO_JOINT_STATES,
             f"no joint_states for {self.settings.joint_state_timeout:g} s; is the arm's driver (or "
             "sim_node) running?",
         )
@@ -138,7 +138,8 @@ class Follower:
             now = time.monotonic()
             if now > deadline:
                 raise ExecutionError(
-                    Reason.TIMEOUT, "the arm does not come to rest, so no trajectory can start"
+                    MotionReason.TIMEOUT,
+                    "the arm does not come to rest, so no trajectory can start",
                 )
             news = self._arm.wait(state, 0.1)
             if news is not None:
@@ -170,7 +171,7 @@ class Follower:
         assert state is not None, "a trajectory starts from a state"
         if np.abs(state.positions - trajectory.positions[0])[:-2].max() > self.START_TOLERANCE:
             raise ExecutionError(
-                Reason.TRACKING_LOST,
+                MotionReason.TRACKING_LOST,
                 "the arm has moved while its motion was optimised; let it rest, and ask again",
             )
         monitor = Monitor(trajectory, state, self.settings.monitor)
@@ -192,11 +193,12 @@ class Follower:
             moving = now if state.stamp > previous.stamp else moving
             if now - moving > self.settings.clock_timeout:
                 raise ExecutionError(
-                    Reason.TIMEOUT, "the joint states' time stands still; is the clock running?"
+                    MotionReason.TIMEOUT,
+                    "the joint states' time stands still; is the clock running?",
                 )
             if now - begin > limit:
                 raise ExecutionError(
-                    Reason.TIMEOUT,
+                    MotionReason.TIMEOUT,
                     f"the execution takes longer than {limit:.0f} s; is the clock running?",
                 )
 
@@ -215,7 +217,9 @@ class Follower:
         deadline = time.monotonic() + self.settings.brake_seconds + 5.0
         while min(state.resting, state.stamp - first.stamp) < 0.15:
             if time.monotonic() > deadline:
-                raise ExecutionError(Reason.TRACKING_LOST, "the arm does not stop when asked to")
+                raise ExecutionError(
+                    MotionReason.TRACKING_LOST, "the arm does not stop when asked to"
+                )
             state = self.next_state(state)
         return state
 
@@ -223,14 +227,14 @@ class Follower:
         phase = self.interval.phase
         if verdict is Verdict.GRASP_LOST:
             raise ExecutionError(
-                Reason.GRASP_LOST,
+                MotionReason.GRASP_LOST,
                 f"the fingers closed on nothing or lost {phase.object_name}",
                 recoverable=True,
             )
         self._hold(state)
         while_doing = f"{phase.kind} of {phase.object_name}" if phase.object_name else "way home"
         raise ExecutionError(
-            Reason.TRACKING_LOST,
+            MotionReason.TRACKING_LOST,
             f"{_SENTENCES[verdict]} ({while_doing})",
             recoverable=verdict in (Verdict.OFF_THE_PATH, Verdict.BEHIND) and self.empty_handed,
         )

@@ -17,24 +17,24 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tamp_interfaces.msg import MotionStatus, SymbolicPlan
+from tamp_runtime.messages.motion_status import report_to_message
+from tamp_runtime.messages.stamps import seconds
+from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
+from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.qos import LATCHED, RELIABLE, SENSOR_DATA
-from tamp_runtime.runner import run_node
 from trajectory_msgs.msg import JointTrajectory
 
 from .arm_state import ArmStateBox
 from .conversions import (
     joint_positions,
     plan_from_message,
-    report_to_message,
-    seconds,
     trajectory_to_message,
 )
 from .errors import InvalidPlanError, MotionError
 from .executive import Executive, Plan
 from .optimiser import MotionOptimiser
 from .parameters import PARAMETERS, execution_settings, optimiser_settings, timing_settings
-from .report import Reason, Report, State
 from .robot import PANDA
 from .trajectory import Trajectory
 
@@ -166,7 +166,7 @@ class MotionNode(Node):
             self.get_logger().info(f"plan {running!r} is being carried out already")
         else:
             sentence = f"plan {running!r} is being carried out; wait for it, or stop it"
-            self._refuse(message, Reason.BUSY, sentence)
+            self._refuse(message, MotionReason.BUSY, sentence)
 
     def _take_up(self, message: SymbolicPlan) -> None:
         try:
@@ -174,16 +174,16 @@ class MotionNode(Node):
         except InvalidPlanError as error:
             with self._lock:
                 self._running = None
-            self._refuse(message, Reason.INVALID_PLAN, str(error))
+            self._refuse(message, MotionReason.INVALID_PLAN, str(error))
             return
         self.get_logger().info(f"plan {plan.plan_id!r}: {len(plan.moves)} moves")
         self._plans.put((plan, self._stop))
 
-    def _refuse(self, message: SymbolicPlan, reason: Reason, sentence: str) -> None:
+    def _refuse(self, message: SymbolicPlan, reason: MotionReason, sentence: str) -> None:
         self._publish(
-            Report(
+            MotionReport(
                 message.plan_id,
-                State.FAILED,
+                MotionState.FAILED,
                 reason,
                 sentence,
                 moves_total=len(message.moves),
@@ -203,7 +203,9 @@ class MotionNode(Node):
             self._publish(last)
         else:
             self._publish(
-                Report(plan_id, State.CANCELLED, message="this plan is not being carried out")
+                MotionReport(
+                    plan_id, MotionState.CANCELLED, message="this plan is not being carried out"
+                )
             )
 
     def _beat(self) -> None:
@@ -215,7 +217,7 @@ class MotionNode(Node):
                 self._publish(report)
         elif not had_plan:
             # So that a planner whose plan was lost with an earlier life of this node learns of it.
-            self._publish(Report())
+            self._publish(MotionReport())
 
     # The worker thread
 
@@ -230,7 +232,7 @@ class MotionNode(Node):
                         f"plan {plan.plan_id!r} met a defect:\n{traceback.format_exc()}"
                     )
 
-    def _report(self, report: Report) -> None:
+    def _report(self, report: MotionReport) -> None:
         """Publishes a report of the worker; at its end the next plan may come at once."""
         if report.state.ended:
             with self._lock:
@@ -241,10 +243,10 @@ class MotionNode(Node):
         if self.context.ok():
             self._trajectories.publish(trajectory_to_message(trajectory))
 
-    def _publish(self, report: Report) -> None:
+    def _publish(self, report: MotionReport) -> None:
         if not self.context.ok():
             return
-        if report.state is State.FAILED:
+        if report.state is MotionState.FAILED:
             self.get_logger().warning(f"plan {report.plan_id!r} failed: {report.message}")
         elif report.message:
             self.get_logger().debug(f"plan {report.plan_id!r}: {report.message}")

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from scene_graph import Base, Move, SceneGraph, SceneGraphError, base_name
+from scene_graph import Move, Place, SceneGraph, SceneGraphError, base_name
 
 from .blocks import Block, Grasp, block_from_object, grasps, placed
 from .errors import InvalidPlanError
@@ -110,22 +110,22 @@ class Phase:
 class _Scene:
     """The blocks of each stack from the bottom, changed move by move."""
 
-    bases: tuple[Base, ...]
+    places: tuple[Place, ...]
     stacks: list[list[Block]]
     floor: float = field(init=False)
 
     def __post_init__(self) -> None:
-        self.floor = min(base.position_world[2] for base in self.bases)
+        self.floor = min(place.position_world[2] for place in self.places)
 
     def columns(self) -> tuple[Column, ...]:
         return tuple(
-            _column(stack, base, self.floor) for stack, base in zip(self.stacks, self.bases)
+            _column(stack, place, self.floor) for stack, place in zip(self.stacks, self.places)
         )
 
 
-def _column(stack: Sequence[Block], base: Base, floor: float) -> Column:
+def _column(stack: Sequence[Block], place: Place, floor: float) -> Column:
     if not stack:
-        return Column(base.position_world[:2], (0.0, 0.0), floor)
+        return Column(place.position_world[:2], (0.0, 0.0), floor)
     lower = np.min([np.subtract(b.position_world[:2], b.half_world) for b in stack], axis=0)
     upper = np.max([np.add(b.position_world[:2], b.half_world) for b in stack], axis=0)
     center, half = (lower + upper) / 2, (upper - lower) / 2
@@ -164,12 +164,12 @@ def read_scene(graph: SceneGraph) -> _Scene:
         InvalidPlanError: if there are no bases, the relations describe no stacks, a block of the
             relations is missing, or a block's pose cannot be used.
     """
-    if not graph.bases:
+    if not graph.places:
         raise InvalidPlanError("the plan's scene has no bases")
-    bases = tuple(sorted(graph.bases, key=lambda base: base.index))
-    if [base.index for base in bases] != list(range(len(bases))):
+    places = tuple(sorted(graph.places, key=lambda place: place.index))
+    if [place.index for place in places] != list(range(len(places))):
         raise InvalidPlanError("the bases of the plan's scene are not numbered from 0")
-    if not np.all(np.isfinite([base.position_world for base in bases])):
+    if not np.all(np.isfinite([place.position_world for place in places])):
         raise InvalidPlanError("a base of the plan's scene has no finite position")
     try:
         names = graph.stacks()
@@ -182,7 +182,7 @@ def read_scene(graph: SceneGraph) -> _Scene:
     for name in sorted(known - listed):
         raise InvalidPlanError(f"{name} stands on nothing in the plan's scene", object_name=name)
     stacks = [[block_from_object(graph.object(name)) for name in stack] for stack in names]
-    return _Scene(bases, stacks)
+    return _Scene(places, stacks)
 
 
 def expand(
@@ -241,7 +241,7 @@ def expand(
         )
         scene.stacks[source].pop()
         support = scene.stacks[target][-1] if scene.stacks[target] else None
-        base = scene.bases[target].position_world
+        base = scene.places[target].position_world
         after = placed(block, grasp, base, support, settings.max_overhang)
         x, y, z = after.position_world
         place = Switch((x, y, z + grasp.height + settings.place_gap), 0.0, target)

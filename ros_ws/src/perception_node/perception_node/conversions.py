@@ -11,7 +11,7 @@ from geometry_msgs.msg import Point, Pose, Quaternion, TransformStamped, Vector3
 from sensor_msgs.msg import CameraInfo
 from std_msgs.msg import ColorRGBA, Header
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
-from tamp_runtime.conversions import graph_to_message
+from tamp_runtime.messages.scene_graph import graph_to_message
 from visualization_msgs.msg import Marker, MarkerArray
 
 from scene_graph import BOX, COLORS, CYLINDER, SPHERE, SceneGraph
@@ -43,10 +43,6 @@ def perceived_to_message(
     message.message = perceived.message
     message.processing_seconds = float(processing_seconds)
     return message
-
-
-def stamp_nanoseconds(header: Header) -> int:
-    return header.stamp.sec * 10**9 + header.stamp.nanosec
 
 
 def markers_from_graph(graph: SceneGraph, header: Header) -> MarkerArray:

@@ -9,9 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_graph import COLORS, SceneGraph, base_index
-
-from .status import Status
+from scene_graph import COLORS, GraphStatus, SceneGraph, base_index
 
 #: Least width of the drawing [px]; smaller images are enlarged so that names can be read. At this
 #: size an image still fits the 512 kB of Fast DDS's shared memory.
@@ -28,7 +26,7 @@ def draw_scene_graph(
     rgb: NDArray[np.uint8],
     labels: NDArray[np.integer],
     graph: SceneGraph,
-    status: Status,
+    status: GraphStatus,
     message: str,
 ) -> NDArray[np.uint8]:
     """The image with the graph drawn in, RGB, at least ``DRAWING_WIDTH`` wide.
@@ -59,7 +57,7 @@ def draw_scene_graph(
             left, _, right, bottom = boxes[relation.subject]
             _text(canvas, relation.object, ((left + right) // 2 - 22, bottom + 14))
     verdict = f"{status.name.replace('_', ' ').lower()}  {graph.confidence:.2f}"
-    _text(canvas, verdict, (6, 14), _CONFIDENT if status is Status.CONFIDENT else _DOUBT)
+    _text(canvas, verdict, (6, 14), _CONFIDENT if status is GraphStatus.CONFIDENT else _DOUBT)
     for number, line in enumerate(_wrapped(message, size[0] // 7)):
         _text(canvas, line, (6, 30 + 14 * number), _DOUBT)
     return canvas

@@ -16,25 +16,26 @@ from sensor_msgs.msg import CameraInfo, Image
 from std_msgs.msg import Header
 from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import ImageToSceneGraph
-from tamp_runtime.images import ImageError, array_from_image, image_from_array
+from tamp_runtime.messages.images import ImageError, array_from_image, image_from_array
+from tamp_runtime.messages.stamps import nanoseconds
+from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
-from tamp_runtime.runner import run_node
 from visualization_msgs.msg import MarkerArray
+
+from scene_graph import GraphStatus
 
 from .camera_model import PinholeCamera
 from .conversions import (
     camera_from_messages,
     markers_from_graph,
     perceived_to_message,
-    stamp_nanoseconds,
 )
 from .drawing import draw_scene_graph
 from .errors import BadImageError
 from .frame_pairing import FramePairing, StampedSet
 from .parameters import PARAMETERS, config_from_parameters
 from .perception import Perceived, Perception
-from .status import Status
 from .weights import DEFAULT_WEIGHTS, load_weights
 
 #: Encodings of the images of a frame.
@@ -78,7 +79,7 @@ class PerceptionNode(Node):
         self._pairing = FramePairing(tuple(TOPICS))
         self._info: CameraInfo | None = None
         self._extrinsics: TransformStamped | None = None
-        self._status: Status | None = None
+        self._status: GraphStatus | None = None
         self._last_image = 0.0
         self._incomplete_since: float | None = None
         self._create_interfaces()
@@ -126,7 +127,7 @@ class PerceptionNode(Node):
         def receive(message: Any) -> None:
             self._last_image = time.perf_counter()
             frame = self._pairing.add(
-                stream, stamp_nanoseconds(message.header), message, self._last_image
+                stream, nanoseconds(message.header.stamp), message, self._last_image
             )
             if frame is None:
                 self._incomplete_since = self._incomplete_since or self._last_image
@@ -146,7 +147,7 @@ class PerceptionNode(Node):
         missing = ", ".join(TOPICS[stream] for stream in self._pairing.missing())
         header = Header(stamp=self.get_clock().now().to_msg(), frame_id=self._frame_id())
         sentence = f"no {missing} arrives with the stamps of the other images; check the camera"
-        self._publish(self._perception.rejected(Status.BAD_IMAGE, sentence), header, now, None)
+        self._publish(self._perception.rejected(GraphStatus.BAD_IMAGE, sentence), header, now, None)
 
     def _on_goal_image(
         self, request: ImageToSceneGraph.Request, response: ImageToSceneGraph.Response
@@ -160,7 +161,7 @@ class PerceptionNode(Node):
             camera = self._camera() if known else None
             perceived = self._perception.perceive(rgb, labels, None, camera)
         except (ImageError, BadImageError) as error:
-            perceived = self._perception.rejected(Status.BAD_IMAGE, str(error))
+            perceived = self._perception.rejected(GraphStatus.BAD_IMAGE, str(error))
         response.scene_graph = perceived_to_message(perceived, header, time.perf_counter() - start)
         return response
 
@@ -177,11 +178,12 @@ class PerceptionNode(Node):
                 picture = rgb, labels
             perceived = self._perception.perceive(rgb, labels, depth, self._camera())
         except (ImageError, BadImageError) as error:
-            perceived = self._perception.rejected(Status.BAD_IMAGE, str(error))
+            perceived = self._perception.rejected(GraphStatus.BAD_IMAGE, str(error))
         except Exception as error:  # a defect must neither stop the node nor go unseen
             self.get_logger().error(f"interpreting a frame failed: {error!r}", exc_info=True)
             perceived = self._perception.rejected(
-                Status.BAD_IMAGE, f"internal error: {error!r}; please report the log of this node"
+                GraphStatus.BAD_IMAGE,
+                f"internal error: {error!r}; please report the log of this node",
             )
         self._publish(perceived, header, frame.arrival, picture)
 
@@ -210,7 +212,7 @@ class PerceptionNode(Node):
         if perceived.status is not self._status:
             self._status = perceived.status
             # One call a severity: rclpy's logger refuses two from the same line.
-            if perceived.status is Status.CONFIDENT:
+            if perceived.status is GraphStatus.CONFIDENT:
                 self.get_logger().info("CONFIDENT: the scene is clear")
             else:
                 self.get_logger().warning(f"{perceived.status.name}: {perceived.message}")

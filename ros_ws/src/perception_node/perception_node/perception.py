@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from scene_graph import (
     UP,
-    Base,
+    GraphStatus,
+    Place,
     Relation,
     SceneGraph,
     SceneObject,
@@ -32,7 +33,6 @@ from .shape_outline import shape_from_outline
 from .stability import StabilityLimits, instability
 from .stack_count import count_stacks
 from .stacks_from_coordinates import assign_places, stacks_from_coordinates, with_empty_places
-from .status import Status
 from .visibility import PlaceVolumes, box_region, hidden_pixels
 from .visual_module import Coordinates
 
@@ -73,7 +73,7 @@ class Perceived:
     """A scene graph, whether it can be used, and a sentence saying why not (or empty)."""
 
     graph: SceneGraph
-    status: Status
+    status: GraphStatus
     message: str = ""
 
 
@@ -106,12 +106,12 @@ class Perception:
                 camera = camera.resized(labels.shape[1], labels.shape[0])
             return self._perceive(rgb, labels, depth, camera)
         except PerceptionError as error:
-            return self.rejected(Status.BAD_IMAGE, str(error))
+            return self.rejected(GraphStatus.BAD_IMAGE, str(error))
 
-    def rejected(self, status: Status, message: str) -> Perceived:
+    def rejected(self, status: GraphStatus, message: str) -> Perceived:
         """An empty graph with the reason for it."""
-        bases = tuple(Base(i, position) for i, position in enumerate(self.config.stack_positions))
-        return Perceived(SceneGraph((), frozenset(), bases, 0.0), status, message)
+        places = tuple(Place(i, position) for i, position in enumerate(self.config.stack_positions))
+        return Perceived(SceneGraph((), frozenset(), places, 0.0), status, message)
 
     def _perceive(
         self,
@@ -124,17 +124,18 @@ class Perception:
         objects = object_images(rgb, labels)
         if len(objects) == 0:
             if verdict := self._occlusion(hidden):
-                return self.rejected(Status.OCCLUDED, verdict)
+                return self.rejected(GraphStatus.OCCLUDED, verdict)
             return self.rejected(
-                Status.NO_OBJECTS, "no block is seen; put blocks on the table, or check the camera"
+                GraphStatus.NO_OBJECTS,
+                "no block is seen; put blocks on the table, or check the camera",
             )
         masks = [largest_part(labels == label) for label in objects.labels]
         located = self.module.locate(objects)
         count = min(count_stacks(np.any(masks, axis=0)), len(objects))
         stacks = stacks_from_coordinates(located.corners, count)
-        verdicts: list[tuple[Status, str]] = []
+        verdicts: list[tuple[GraphStatus, str]] = []
         if verdict := self._occlusion(hidden):
-            verdicts.append((Status.OCCLUDED, verdict))
+            verdicts.append((GraphStatus.OCCLUDED, verdict))
         on_places = self._on_places(stacks, located, camera, verdicts)
         columns = stacks if on_places is None else on_places
 
@@ -155,24 +156,26 @@ class Perception:
         graph = SceneGraph(
             objects=items,
             relations=_relations(names, columns, on_places is not None),
-            bases=self.rejected(Status.NO_OBJECTS, "").graph.bases if on_places is not None else (),
+            places=self.rejected(GraphStatus.NO_OBJECTS, "").graph.places
+            if on_places is not None
+            else (),
             confidence=float(confidence.min()) * (1.0 - max(hidden, default=0.0)),
         )
         return self._judged(graph, verdicts)
 
-    def _judged(self, graph: SceneGraph, verdicts: Sequence[tuple[Status, str]]) -> Perceived:
+    def _judged(self, graph: SceneGraph, verdicts: Sequence[tuple[GraphStatus, str]]) -> Perceived:
         if verdicts:
             return Perceived(graph, *verdicts[0])
         if graph.confidence < self.config.min_confidence:
             worst = min(graph.objects, key=lambda item: item.confidence)
             return Perceived(
                 graph,
-                Status.LOW_CONFIDENCE,
+                GraphStatus.LOW_CONFIDENCE,
                 f"the visual module reproduces {worst.name} with a confidence of only "
                 f"{worst.confidence:.2f} (required: {self.config.min_confidence:.2f}); look again, "
                 "or train it on such scenes",
             )
-        return Perceived(graph, Status.CONFIDENT)
+        return Perceived(graph, GraphStatus.CONFIDENT)
 
     def _hidden(
         self,
@@ -204,7 +207,7 @@ class Perception:
         stacks: list[list[int]],
         located: Coordinates,
         camera: PinholeCamera | None,
-        verdicts: list[tuple[Status, str]],
+        verdicts: list[tuple[GraphStatus, str]],
     ) -> list[list[int]] | None:
         """The stacks of all m places; None where the places or the camera are unknown."""
         places = self.config.stack_positions
@@ -221,7 +224,7 @@ class Perception:
         try:
             assigned = assign_places(seen, projected)
         except PerceptionError as error:
-            verdicts.append((Status.UNSTABLE, f"{error}; put every block on a place"))
+            verdicts.append((GraphStatus.UNSTABLE, f"{error}; put every block on a place"))
             return None
         return with_empty_places(stacks, assigned, len(places))
 
@@ -235,14 +238,14 @@ class Perception:
         names: Sequence[str],
         columns: Sequence[Sequence[int]],
         have_places: bool,
-        verdicts: list[tuple[Status, str]],
+        verdicts: list[tuple[GraphStatus, str]],
     ) -> None:
         if not have_places:
             return
         places = self.config.stack_positions
         sentence = instability(poses, names, columns, places, self.config.limits)
         if sentence:
-            verdicts.append((Status.UNSTABLE, f"{sentence}; look again, or tidy up by hand"))
+            verdicts.append((GraphStatus.UNSTABLE, f"{sentence}; look again, or tidy up by hand"))
 
 
 def _check_frame(rgb: NDArray[Any], labels: NDArray[Any], depth: NDArray[Any] | None) -> None:

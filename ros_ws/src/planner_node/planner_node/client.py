@@ -28,8 +28,8 @@ from rclpy.task import Future
 from sensor_msgs.msg import Image
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.srv import PlanToGoal
-from tamp_runtime.asking import arrival, ask
-from tamp_runtime.spinning import NodeThread
+from tamp_runtime.node_thread import NodeThread
+from tamp_runtime.service_call import arrival, ask
 from unique_identifier_msgs.msg import UUID
 
 #: The planner counts as gone when it has not been seen for this long [s].

@@ -21,8 +21,8 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.srv import PlanToGoal
-from tamp_runtime.images import image_from_array
-from tamp_runtime.runner import prepare_process
+from tamp_runtime.messages.images import image_from_array
+from tamp_runtime.node_process import prepare_process
 
 from .client import PlannerClient, PlannerUnavailableError
 from .plan_text import describe_plan

@@ -11,7 +11,11 @@ from std_msgs.msg import Header
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_interfaces.msg import SceneObject, SymbolicPlan
-from tamp_runtime.conversions import graph_from_message, moves_to_messages, relations_to_messages
+from tamp_runtime.messages.scene_graph import (
+    graph_from_message,
+    moves_to_messages,
+    relations_to_messages,
+)
 
 from scene_graph import Relation, SceneGraphError, Stacks, up_relations
 
@@ -61,7 +65,7 @@ def scene_from_message(message: SceneGraphMsg, min_confidence: float) -> Scene:
         stacks = graph.stacks()
     except (SceneGraphError, ValueError) as error:
         raise NotConfidentError(f"the scene graph contradicts itself: {error}") from error
-    if not graph.bases:
+    if not graph.places:
         raise NotConfidentError("the scene graph has no bases, so that stacks cannot be told apart")
     on_stacks = {name for stack in stacks for name in stack}
     if on_stacks != set(graph.names):
@@ -117,7 +121,3 @@ def constant_name(message_type: Any, value: int, names: tuple[str, ...]) -> str:
         if getattr(message_type, name) == value:
             return name
     return str(value)
-
-
-def nanoseconds(stamp: Time) -> int:
-    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)

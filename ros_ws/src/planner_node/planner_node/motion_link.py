@@ -13,8 +13,9 @@ from rclpy.publisher import Publisher
 from rclpy.time import Time
 from std_msgs.msg import Header
 from tamp_interfaces.msg import MotionStatus, SymbolicPlan
+from tamp_runtime.messages.stamps import nanoseconds
 
-from .conversions import MOTION_STATES, constant_name, nanoseconds
+from .conversions import MOTION_STATES, constant_name
 from .errors import MotionBusyError, MotionSilentError
 from .scene_watch import POLL_SECONDS
 from .settings import Settings

@@ -18,9 +18,9 @@ from rclpy.node import Node
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.msg import MotionStatus, SceneGraph, SymbolicPlan
 from tamp_interfaces.srv import PlanToGoal
+from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE
-from tamp_runtime.runner import run_node
 
 from .closed_loop import ClosedLoop
 from .conversions import Scene, plan_to_message, predicted_scenes, status_code

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from tamp_interfaces.msg import SceneGraph, SymbolicPlan
-from tamp_runtime.conversions import relations_from_messages
+from tamp_runtime.messages.scene_graph import relations_from_messages
 
 from scene_graph import (
     InconsistentRelationsError,

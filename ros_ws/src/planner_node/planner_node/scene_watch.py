@@ -9,8 +9,9 @@ from collections.abc import Callable
 from typing import Final
 
 from tamp_interfaces.msg import SceneGraph
+from tamp_runtime.messages.stamps import nanoseconds
 
-from .conversions import Scene, nanoseconds, scene_from_message
+from .conversions import Scene, scene_from_message
 from .errors import CancelledError, NoSceneGraphError, NotConfidentError, ObjectLostError
 from .settings import Settings
 

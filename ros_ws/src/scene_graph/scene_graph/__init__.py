@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The vocabulary of the project as plain Python: objects, relations, stacks, moves."""
+"""The vocabulary of the project as plain Python: objects, places, relations, stacks, moves."""
 
 from .errors import ImpossibleMoveError, InconsistentRelationsError, SceneGraphError
-from .graph import Base, SceneGraph, format_relations
+from .graph import GraphStatus, SceneGraph
 from .moves import Move, all_moves
 from .objects import (
     BOX,
@@ -14,36 +14,46 @@ from .objects import (
     object_name,
     split_object_name,
 )
-from .relations import FRONT, LEFT, PREDICATES, UP, Relation
+from .places import ROW_OF_THREE, Place, base_index, base_name
+from .poses import BlockPose, quaternion_from_yaw, rotation_from_quaternion, wrap_line
+from .predicates import ABOVE, FRONT, LEFT, PREDICATES, UP, Phrase, Predicate, Predicates, Spot
+from .relations import Relation, format_relations
 from .stacks import (
     Stacks,
     apply_move,
-    base_index,
-    base_name,
     format_stacks,
     left_relations,
+    spots_of,
     stacks_from_relations,
     up_relations,
 )
 
 __all__ = [
+    "ABOVE",
     "BOX",
     "COLORS",
     "CYLINDER",
     "FRONT",
     "LEFT",
     "PREDICATES",
+    "ROW_OF_THREE",
     "SHAPES",
     "SPHERE",
     "UP",
-    "Base",
+    "BlockPose",
+    "GraphStatus",
     "ImpossibleMoveError",
     "InconsistentRelationsError",
     "Move",
+    "Phrase",
+    "Place",
+    "Predicate",
+    "Predicates",
     "Relation",
     "SceneGraph",
     "SceneGraphError",
     "SceneObject",
+    "Spot",
     "Stacks",
     "all_moves",
     "apply_move",
@@ -53,7 +63,11 @@ __all__ = [
     "format_stacks",
     "left_relations",
     "object_name",
+    "quaternion_from_yaw",
+    "rotation_from_quaternion",
     "split_object_name",
+    "spots_of",
     "stacks_from_relations",
     "up_relations",
+    "wrap_line",
 ]

@@ -3,29 +3,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
+from enum import IntEnum
 
 from .objects import SceneObject
+from .places import Place
 from .relations import Relation
 from .stacks import Stacks, stacks_from_relations
 
 
-@dataclass(frozen=True)
-class Base:
-    """A place: index from the left from 0, and its centre on the table's surface [m]."""
+class GraphStatus(IntEnum):
+    """Whether a scene graph can be planned on, and if not, why; numbers as in its message."""
 
-    index: int
-    position_world: tuple[float, float, float]
+    CONFIDENT = 0
+    LOW_CONFIDENCE = 1
+    OCCLUDED = 2
+    UNSTABLE = 3
+    NO_OBJECTS = 4
+    BAD_IMAGE = 5
 
 
 @dataclass(frozen=True)
 class SceneGraph:
-    """Objects, relations and bases; ``confidence`` is the minimum over objects (A.2.5)."""
+    """Objects, relations and places; ``confidence`` is the minimum over objects (A.2.5)."""
 
     objects: tuple[SceneObject, ...]
     relations: frozenset[Relation]
-    bases: tuple[Base, ...] = ()
+    places: tuple[Place, ...] = ()
     confidence: float = 1.0
 
     def __post_init__(self) -> None:
@@ -47,9 +51,4 @@ class SceneGraph:
 
     def stacks(self) -> Stacks:
         """The state that the relations describe; see :func:`stacks_from_relations`."""
-        return stacks_from_relations(self.relations, len(self.bases))
-
-
-def format_relations(relations: Iterable[Relation]) -> str:
-    """Sorted and comma separated, for logs and pictures."""
-    return ", ".join(str(relation) for relation in sorted(relations))
+        return stacks_from_relations(self.relations, len(self.places))

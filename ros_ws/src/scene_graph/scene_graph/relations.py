@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Relations: the edges of a scene graph (3.2)."""
+"""Relations: the edges of a scene graph (3.2), and the conditions of a goal (5.2.2)."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Final
 
-UP: Final = "up"
-LEFT: Final = "left"
-FRONT: Final = "front"
-PREDICATES: Final = (UP, LEFT, FRONT)
+from .predicates import PREDICATES, Spot
 
 
 @dataclass(frozen=True, order=True)
 class Relation:
-    """A triple (subject, predicate, object); ``red_box up blue_box`` reads "red on blue"."""
+    """A triple (subject, predicate, object); ``red_box up blue_box`` reads "red on blue".
+
+    Raises:
+        ValueError: the predicate is not one of :data:`PREDICATES`.
+    """
 
     subject: str
     predicate: str
@@ -28,3 +29,24 @@ class Relation:
 
     def __str__(self) -> str:
         return f"{self.subject} {self.predicate} {self.object}"
+
+    @property
+    def words(self) -> str:
+        """The relation as people say it: ``red_box on blue_box``."""
+        return f"{self.subject} {PREDICATES[self.predicate].words} {self.object}"
+
+    def holds(self, spots: Mapping[str, Spot]) -> bool:
+        """Whether a state fulfils it; what is not there fulfils nothing.
+
+        Args:
+            spots: where everything is, see :func:`scene_graph.spots_of`.
+        """
+        subject, object_ = spots.get(self.subject), spots.get(self.object)
+        if subject is None or object_ is None:
+            return False
+        return PREDICATES[self.predicate].holds(subject, object_)
+
+
+def format_relations(relations: Iterable[Relation]) -> str:
+    """Sorted and comma separated, for logs and pictures."""
+    return ", ".join(str(relation) for relation in sorted(relations))

@@ -4,29 +4,25 @@
 from __future__ import annotations
 
 import itertools
-import re
 from collections.abc import Iterable
-from typing import Final
 
 from .errors import ImpossibleMoveError, InconsistentRelationsError
 from .moves import Move
-from .relations import LEFT, UP, Relation
+from .places import base_index, base_name
+from .predicates import LEFT, UP, Spot
+from .relations import Relation
 
 #: A state: for each of the m stacks from the left, the names of its objects from the bottom.
 Stacks = tuple[tuple[str, ...], ...]
 
-_BASE: Final = re.compile(r"stack(0|[1-9]\d*)")
 
-
-def base_name(index: int) -> str:
-    """Name of the imaginary base of a stack (A.2.2): ``stack0``, ``stack1``, … from the left."""
-    return f"stack{index}"
-
-
-def base_index(name: str) -> int | None:
-    """Index of a base by its name, or None where the name is not a base's."""
-    match = _BASE.fullmatch(name)
-    return int(match.group(1)) if match else None
+def spots_of(stacks: Stacks) -> dict[str, Spot]:
+    """Where every block and every base is; see :class:`Spot`."""
+    spots = {base_name(index): Spot(index, -1) for index in range(len(stacks))}
+    for index, stack in enumerate(stacks):
+        for level, name in enumerate(stack):
+            spots[name] = Spot(index, level)
+    return spots
 
 
 def up_relations(stacks: Stacks) -> frozenset[Relation]:

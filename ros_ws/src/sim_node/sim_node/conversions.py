@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from sensor_msgs.msg import CameraInfo, JointState
 from std_msgs.msg import Header
-from tamp_runtime.images import image_from_array
+from tamp_runtime.messages.images import image_from_array
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from .camera import Frame

@@ -7,7 +7,7 @@ import itertools
 
 import numpy as np
 
-from scene_graph import UP, Base, Relation, SceneGraph, SceneObject, base_name, split_object_name
+from scene_graph import UP, Place, Relation, SceneGraph, SceneObject, base_name, split_object_name
 
 from .world import World
 
@@ -52,8 +52,8 @@ def true_scene_graph(world: World) -> SceneGraph:
             if touches and np.abs(offset[:2]).max() < reach[below]:
                 relations.add(Relation(item.name, UP, below))
                 break
-    bases = tuple(Base(i, base) for i, base in enumerate(config.stack_positions))
-    return SceneGraph(tuple(objects), frozenset(relations), bases)
+    places = tuple(Place(i, base) for i, base in enumerate(config.stack_positions))
+    return SceneGraph(tuple(objects), frozenset(relations), places)
 
 
 def _base_reach(positions: tuple[tuple[float, float, float], ...]) -> float:

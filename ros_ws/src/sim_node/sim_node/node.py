@@ -18,10 +18,10 @@ from sensor_msgs.msg import CameraInfo, Image, JointState
 from std_msgs.msg import Header, String
 from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import ResetScene
-from tamp_runtime.conversions import graph_to_message
+from tamp_runtime.messages.scene_graph import graph_to_message
+from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import ParameterSpec, declare_parameters
 from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
-from tamp_runtime.runner import run_node
 from trajectory_msgs.msg import JointTrajectory
 
 from scene_graph import Stacks, format_stacks

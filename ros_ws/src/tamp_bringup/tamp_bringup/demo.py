@@ -23,8 +23,8 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.msg import MotionStatus
-from tamp_runtime.conversions import graph_from_message, moves_from_messages
-from tamp_runtime.runner import prepare_process
+from tamp_runtime.messages.scene_graph import graph_from_message, moves_from_messages
+from tamp_runtime.node_process import prepare_process
 from tqdm import tqdm
 
 from planner_node.client import PlannerClient

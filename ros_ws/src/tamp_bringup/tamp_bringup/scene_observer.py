@@ -13,11 +13,12 @@ import rclpy
 from sensor_msgs.msg import Image
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_interfaces.srv import ResetScene
-from tamp_runtime.asking import ask
-from tamp_runtime.conversions import graph_from_message
-from tamp_runtime.images import array_from_image
+from tamp_runtime.messages.images import array_from_image
+from tamp_runtime.messages.scene_graph import graph_from_message
+from tamp_runtime.messages.stamps import seconds
+from tamp_runtime.node_thread import NodeThread
 from tamp_runtime.qos import LATCHED, NEWEST
-from tamp_runtime.spinning import NodeThread
+from tamp_runtime.service_call import ask
 
 from scene_graph import InconsistentRelationsError, SceneGraph, Stacks
 from sim_node.layouts import format_layout
@@ -147,8 +148,7 @@ class SceneObserver:
     def _on_image(self, message: Image) -> None:
         self._image = message
         if self.recording is not None:
-            stamp = message.header.stamp
-            self.recording.add(array_from_image(message, "rgb8"), stamp.sec + 1e-9 * stamp.nanosec)
+            self.recording.add(array_from_image(message, "rgb8"), seconds(message.header.stamp))
 
 
 def true_stacks(truth: SceneGraph) -> Stacks | None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What becomes of a plan, as values; :mod:`conversions` makes MotionStatus of them."""
+"""What becomes of a plan that is carried out: MotionStatus as a plain value."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 
-class State(IntEnum):
+class MotionState(IntEnum):
     """The states of MotionStatus, with its numbers."""
 
     IDLE = 0
@@ -20,10 +20,10 @@ class State(IntEnum):
     @property
     def ended(self) -> bool:
         """Whether nothing more will happen with the plan."""
-        return self in (State.SUCCEEDED, State.CANCELLED, State.FAILED)
+        return self in (MotionState.SUCCEEDED, MotionState.CANCELLED, MotionState.FAILED)
 
 
-class Reason(IntEnum):
+class MotionReason(IntEnum):
     """The reasons of MotionStatus, with its numbers."""
 
     NONE = 0
@@ -38,12 +38,15 @@ class Reason(IntEnum):
 
 
 @dataclass(frozen=True)
-class Report:
-    """The state of a plan at one moment; the fields are those of MotionStatus."""
+class MotionReport:
+    """The state of a plan at one moment.
+
+    The fields are those of MotionStatus; ``stamp`` is its header's [ns], 0 before it is sent.
+    """
 
     plan_id: str = ""
-    state: State = State.IDLE
-    reason: Reason = Reason.NONE
+    state: MotionState = MotionState.IDLE
+    reason: MotionReason = MotionReason.NONE
     message: str = ""
     bound: str = ""
     object_name: str = ""
@@ -55,3 +58,4 @@ class Report:
     progress: float = 0.0
     optimisation_seconds: float = 0.0
     duration: float = 0.0
+    stamp: int = 0

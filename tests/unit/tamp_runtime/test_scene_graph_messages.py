@@ -3,7 +3,7 @@
 
 import pytest
 from std_msgs.msg import Header
-from tamp_runtime.conversions import (
+from tamp_runtime.messages.scene_graph import (
     graph_from_message,
     graph_to_message,
     moves_from_messages,
@@ -12,7 +12,7 @@ from tamp_runtime.conversions import (
     relations_to_messages,
 )
 
-from scene_graph import Base, Move, Relation, SceneGraph, SceneObject, up_relations
+from scene_graph import Move, Place, Relation, SceneGraph, SceneObject, up_relations
 
 STACKS = (("red_box", "blue_box"), (), ("green_box",))
 GRAPH = SceneGraph(
@@ -23,7 +23,7 @@ GRAPH = SceneGraph(
         SceneObject("red_box", "red", "box"),
     ),
     relations=up_relations(STACKS),
-    bases=tuple(Base(index, (0.5, 0.25 * index, 0.0)) for index in range(3)),
+    places=tuple(Place(index, (0.5, 0.25 * index, 0.0)) for index in range(3)),
     confidence=0.75,
 )  # fmt: skip
 

@@ -13,7 +13,7 @@ from tamp_interfaces.msg import Relation as RelationMsg
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_interfaces.msg import SceneObject as SceneObjectMsg
 
-from scene_graph import Base, Move, Relation, SceneGraph, SceneObject, Stacks
+from scene_graph import Move, Place, Relation, SceneGraph, SceneObject, Stacks
 
 
 def object_to_message(item: SceneObject) -> SceneObjectMsg:
@@ -71,10 +71,10 @@ def graph_to_message(graph: SceneGraph, header: Header) -> SceneGraphMsg:
         relations=relations_to_messages(graph.relations),
         bases=[
             BaseMsg(
-                index=base.index,
-                position=Point(**dict(zip("xyz", map(float, base.position_world)))),
+                index=place.index,
+                position=Point(**dict(zip("xyz", map(float, place.position_world)))),
             )
-            for base in graph.bases
+            for place in graph.places
         ],
         confidence=float(graph.confidence),
     )
@@ -85,8 +85,8 @@ def graph_from_message(message: SceneGraphMsg) -> SceneGraph:
     return SceneGraph(
         objects=tuple(object_from_message(item) for item in message.objects),
         relations=relations_from_messages(message.relations),
-        bases=tuple(
-            Base(item.index, (item.position.x, item.position.y, item.position.z))
+        places=tuple(
+            Place(item.index, (item.position.x, item.position.y, item.position.z))
             for item in message.bases
         ),
         confidence=message.confidence,
