@@ -36,9 +36,9 @@ train-visual: setup  ## train the visual module G without labels; resumable
 eval-visual: setup  ## scene graph accuracy on unseen states; QUICK=1
 	@$(RUN) python benchmarks/eval_visual.py $(ARGS)
 
-eval-tasks: setup  ## success from pixels to tower; N= BLOCKS= RTF= RESUME=1 QUICK=1
+eval-tasks: setup  ## success from pixels to tower; N= BLOCKS= RTF= RESUME=1 QUICK=1 BASELINE=
 	@$(RUN) python benchmarks/eval_tasks.py $(if $(N),--n $(N)) $(if $(BLOCKS),--blocks $(BLOCKS)) \
-	  $(if $(RTF),--real-time-factor $(RTF)) $(if $(RESUME),--resume)
+	  $(if $(RTF),--real-time-factor $(RTF)) $(if $(RESUME),--resume) $(if $(BASELINE),--baseline "$(BASELINE)")
 
 results: setup  ## docs/results.md from the result files
 	@$(RUN) python benchmarks/write_results_page.py

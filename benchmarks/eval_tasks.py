@@ -3,6 +3,7 @@
 
 The four nodes run as processes; success is judged by the simulator's ground truth. Stops cleanly
 on Ctrl-C; what was measured is kept in runs/ and the same command goes on from there (RESUME=1).
+BASELINE=FOLDER times another checkout's code on the same tasks in turns.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from pathlib import Path
 from statistics import median
 
 import rclpy
+from baseline_tasks import Baseline, BaselineError, ratio_rows
 from rclpy.signals import SignalHandlerOptions
 from results_file import Row, print_rows, quick, wilson_interval, write_result
 from tamp_runtime.node_process import prepare_process
@@ -29,10 +31,22 @@ from tamp_bringup.task_runner import run_task
 
 FIRST_SEED = 1000
 TIMINGS = ("perceive", "plan", "motion", "execute", "total")
+#: Tasks between two changes of the code, where two are timed in turns.
+TURN = 5
 
 
-def run_tasks(options: argparse.Namespace, folder: Path) -> list[dict]:
-    """Runs the tasks that are not yet in ``folder`` and returns all results."""
+def run_in_turns(options: argparse.Namespace, folder: Path, baseline: Baseline) -> list[dict]:
+    """Runs all tasks of this code, with the first ones of the other in between."""
+    results: list[dict] = []
+    for done in range(0, options.n, TURN):
+        if done < options.baseline_n:
+            baseline.run(min(done + TURN, options.baseline_n))
+        results += run_tasks(options, folder, range(done, min(done + TURN, options.n)))
+    return results
+
+
+def run_tasks(options: argparse.Namespace, folder: Path, tasks: range) -> list[dict]:
+    """Runs those of the tasks that are not yet in ``folder`` and returns the results of all."""
     parameters = {"sim_node": {"real_time_factor": float(options.real_time_factor)}}
     results: list[dict] = []
     with (
@@ -42,7 +56,7 @@ def run_tasks(options: argparse.Namespace, folder: Path) -> list[dict]:
     ):
         observer.reset(0, options.blocks, timeout=60.0)
         observer.confident_graph(timeout=60.0)  # the nodes have started and found one another
-        progress = tqdm(range(FIRST_SEED, FIRST_SEED + options.n), unit="task")
+        progress = tqdm([FIRST_SEED + task for task in tasks], unit="task")
         for seed in progress:
             path = folder / f"{seed}.json"
             if not path.exists():
@@ -141,6 +155,8 @@ def main() -> int:
     parser.add_argument("--blocks", type=int, default=6, help="blocks in each task, 3 to 7")
     parser.add_argument("--real-time-factor", type=float, default=1.0)
     parser.add_argument("--resume", action="store_true", help="keep the tasks done so far")
+    parser.add_argument("--baseline", type=Path, help="another checkout, set up, to time in turns")
+    parser.add_argument("--baseline-n", type=int, default=10, help="tasks that it runs")
     options = parser.parse_args()
     if quick():
         options.n = min(options.n, 2)
@@ -153,17 +169,26 @@ def main() -> int:
     prepare_process()
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     started = time.monotonic()
+    baseline: Baseline | None = None
     try:
-        results = run_tasks(options, folder)
+        if options.baseline:
+            baseline = Baseline(options.baseline, options.blocks, options.real_time_factor)
+            if not options.resume:
+                baseline.forget()
+            results = run_in_turns(options, folder, baseline)
+        else:
+            results = run_tasks(options, folder, range(options.n))
     except KeyboardInterrupt:
         print("\nstopped; RESUME=1 goes on with the tasks that are left")
         return 130
-    except (NodeDiedError, SimulationError) as error:
+    except (BaselineError, NodeDiedError, SimulationError) as error:
         print(f"\n{error}", file=sys.stderr)
         return 1
     finally:
         rclpy.try_shutdown()
     rows = make_rows(results, options.blocks)
+    if baseline:
+        rows += ratio_rows(results, baseline.results(), baseline.commit)
     failures = [r for r in results if not r["success"]]
     details = {
         "failures_by_module": dict(Counter(r["failure"]["module"] for r in failures)),
