@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes spun in process, each test in a context of its own."""
+"""Nodes spun in process, each test in a context and a DDS domain of its own."""
 
 from __future__ import annotations
 
@@ -27,22 +27,17 @@ PATIENCE = 120.0
 
 AnyNode = TypeVar("AnyNode", bound=Node)
 
-#: The ids that need no ports beyond the usual range are 0 to 101; 0 is everybody's.
-DOMAIN_ID = int(os.environ.get("ROS_DOMAIN_ID") or 0) or 1 + os.getpid() % 100
-
 
 class RosContext:
     """A context, and an executor in a thread that spins what is added.
 
     Attributes:
         context: give it to nodes: ``ros_context.add(MyNode(context=ros_context.context))``.
-        domain_id: for processes that shall meet the nodes: the environment's ``ROS_DOMAIN_ID``.
     """
 
-    def __init__(self) -> None:
-        self.domain_id = DOMAIN_ID
+    def __init__(self, domain_id: int) -> None:
         self.context = Context()
-        rclpy.init(context=self.context, domain_id=DOMAIN_ID)
+        rclpy.init(context=self.context, domain_id=domain_id)
         self._executor = MultiThreadedExecutor(num_threads=8, context=self.context)
         self._nodes: list[Node] = []
         self._errors: list[Exception] = []
@@ -97,9 +92,9 @@ class RosContext:
 
 
 @pytest.fixture
-def ros_context() -> Iterator[RosContext]:
+def ros_context(domain_id: int) -> Iterator[RosContext]:
     """See :class:`RosContext`; the test fails if a callback of a node raises."""
-    ros = RosContext()
+    ros = RosContext(domain_id)
     try:
         yield ros
     finally:
@@ -107,16 +102,17 @@ def ros_context() -> Iterator[RosContext]:
 
 
 @pytest.fixture
-def start(ros_context: RosContext) -> Iterator[Start]:
-    """Starts executables in the context's domain; what still runs when the test ends is killed."""
+def start(domain_id: int) -> Iterator[Start]:
+    """Starts executables in the test's domain; what still runs when the test ends is killed."""
+    del domain_id  # it is in the environment
     processes: list[Process] = []
 
-    def run(package: str, executable: str, *arguments: str) -> Process:
-        processes.append(ros2_run(ros_context.domain_id, package, executable, *arguments))
+    def run(package: str, executable: str, *arguments: str, ignore_sigint: bool = False) -> Process:
+        processes.append(ros2_run(package, executable, *arguments, ignore_sigint=ignore_sigint))
         return processes[-1]
 
     yield run
     for process in processes:
         if process.poll() is None:
             process.kill()
-            process.communicate()
+            process.communicate(timeout=PATIENCE)

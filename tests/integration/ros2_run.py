@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
-import os
+import signal
 import subprocess
 from collections.abc import Callable
 from typing import NamedTuple
+
+from tamp_runtime.node_process import EXIT_STUCK
 
 Process = subprocess.Popen[str]
 #: ``start(package, executable, *arguments)``, the fixture ``start``.
@@ -24,19 +26,27 @@ class Ended(NamedTuple):
     stderr: str
 
 
-def ros2_run(domain_id: int, package: str, executable: str, *arguments: str) -> Process:
-    """Starts an executable in a DDS domain."""
+def ros2_run(
+    package: str, executable: str, *arguments: str, ignore_sigint: bool = False
+) -> Process:
+    """Starts an executable in the DDS domain of the environment.
+
+    Args:
+        ignore_sigint: as a script starts what it puts into the background.
+    """
+    number = signal.SIG_IGN if ignore_sigint else signal.SIG_DFL
     return subprocess.Popen(
         ["ros2", "run", package, executable, *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        env={**os.environ, "ROS_DOMAIN_ID": str(domain_id)},
+        preexec_fn=lambda: signal.signal(signal.SIGINT, number),
     )
 
 
 def finish(process: Process) -> Ended:
-    """Waits for the end of a process, which must not be a traceback."""
+    """Waits for the end of a process, which must be neither a traceback nor a hang."""
     stdout, stderr = process.communicate(timeout=PROCESS_TIMEOUT)
+    assert process.returncode != EXIT_STUCK, stderr
     assert "Traceback" not in stderr, stderr
     return Ended(process.returncode, stdout, stderr)

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A callback that never returns does not keep a node's process from stopping."""
+"""A node that does not get through its shutdown is ended, and cannot pass for one that does."""
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 import sys
+
+import pytest
+from ros2_run import PROCESS_TIMEOUT
+from tamp_runtime.node_process import EXIT_STUCK
 
 STUCK = """
 import sys, time
@@ -16,28 +19,37 @@ from tamp_runtime.node_process import run_node
 class Stuck(Node):
     def __init__(self):
         super().__init__("stuck")
-        self.create_timer(0.01, self.stay)
+        self.create_timer(0.01, self.work)
 
     def stay(self):
-        print("here", flush=True)
         time.sleep(1000.0)
+
+    def work(self):
+        print("here", flush=True)
+        {callback}
+
+    def destroy_node(self):
+        {destructor}
 
 sys.exit(run_node(Stuck))
 """
 
 
-def test_a_stuck_node_is_ended_and_shows_where_it_hangs() -> None:
+@pytest.mark.parametrize("callback, destructor", [("self.stay()", "pass"), ("pass", "self.stay()")])
+def test_a_stuck_node_is_ended_and_shows_where_it_hangs(
+    domain_id: int, callback: str, destructor: str
+) -> None:
+    assert domain_id
     process = subprocess.Popen(
-        [sys.executable, "-c", STUCK],
+        [sys.executable, "-c", STUCK.format(callback=callback, destructor=destructor)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        env={**os.environ, "ROS_DOMAIN_ID": str(1 + os.getpid() % 100)},
     )
     assert process.stdout is not None
     assert process.stdout.readline() == "here\n"
     process.send_signal(signal.SIGINT)
-    _, stderr = process.communicate(timeout=60.0)
-    assert process.returncode == 0
+    _, stderr = process.communicate(timeout=PROCESS_TIMEOUT)
+    assert process.returncode == EXIT_STUCK
     assert "not stopped after 5 s" in stderr
     assert "in stay" in stderr

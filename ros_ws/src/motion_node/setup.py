@@ -17,7 +17,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "motion_node = motion_node.executable:main",
+            "motion_node = motion_node.executable:motion_node",
         ]
     },
 )

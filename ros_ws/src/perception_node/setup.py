@@ -17,8 +17,8 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "perception_node = perception_node.executable:main",
-            "train_visual = perception_node.train_visual:main",
+            "perception_node = perception_node.executable:perception_node",
+            "train_visual = perception_node.executable:train_visual",
         ]
     },
 )

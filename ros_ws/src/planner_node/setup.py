@@ -17,9 +17,9 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "planner_node = planner_node.executable:main",
-            "plan_to_goal = planner_node.commands:plan_to_goal_main",
-            "achieve_goal = planner_node.commands:achieve_goal_main",
+            "planner_node = planner_node.executable:planner_node",
+            "plan_to_goal = planner_node.executable:plan_to_goal",
+            "achieve_goal = planner_node.executable:achieve_goal",
         ]
     },
 )

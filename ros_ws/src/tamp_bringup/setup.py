@@ -19,7 +19,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "demo = tamp_bringup.demo:main",
+            "demo = tamp_bringup.executable:demo",
         ]
     },
 )

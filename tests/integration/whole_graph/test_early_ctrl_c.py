@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ctrl-C before a node is there."""
+"""SIGINT stops a node in order, however early it comes and whatever the parent did with it."""
 
 from __future__ import annotations
 
@@ -8,20 +8,34 @@ import time
 from pathlib import Path
 
 import pytest
-from ros2_run import PROCESS_TIMEOUT, Start, finish
+from ros2_run import PROCESS_TIMEOUT, Process, Start, finish
 
 from tamp_bringup.processes import NODES
 
 
-@pytest.mark.parametrize("node", NODES)
-@pytest.mark.parametrize("library", ["_rclpy_pybind11", "librmw_fastrtps_cpp"])
-def test_a_node_that_is_still_loading_stops_without_a_trace(
-    start: Start, node: str, library: str
-) -> None:
-    process = start(node, node)
+def wait_for_library(process: Process, library: str) -> None:
+    """Returns as soon as a process has a shared library in its memory."""
+    maps = Path(f"/proc/{process.pid}/maps")
     deadline = time.monotonic() + PROCESS_TIMEOUT
-    while library not in Path(f"/proc/{process.pid}/maps").read_text():
-        assert time.monotonic() < deadline
+    while library not in maps.read_text():
+        assert time.monotonic() < deadline, f"no {library} in {process.args}"
         time.sleep(0.005)
+
+
+@pytest.mark.parametrize("ignore_sigint", [False, True], ids=["foreground", "background"])
+@pytest.mark.parametrize("node", NODES)
+def test_a_node_that_is_still_loading_stops_without_a_trace(
+    start: Start, node: str, ignore_sigint: bool
+) -> None:
+    process = start(node, node, ignore_sigint=ignore_sigint)
+    wait_for_library(process, "_rclpy_pybind11")
+    process.send_signal(signal.SIGINT)
+    assert finish(process).code == 0
+
+
+@pytest.mark.parametrize("node", NODES)
+def test_a_node_that_is_just_starting_stops_without_a_trace(start: Start, node: str) -> None:
+    process = start(node, node)
+    wait_for_library(process, "librmw_fastrtps_cpp")
     process.send_signal(signal.SIGINT)
     assert finish(process).code == 0

@@ -6,6 +6,6 @@ from __future__ import annotations
 from tamp_runtime.executable import run_module
 
 
-def main() -> int:
+def motion_node() -> int:
     """Entry point of ``ros2 run motion_node motion_node``."""
     return run_module("motion_node.node")

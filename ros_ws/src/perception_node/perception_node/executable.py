@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executable ``perception_node``."""
+"""The executables ``perception_node``, ``train_visual``."""
 
 from __future__ import annotations
 
 from tamp_runtime.executable import run_module
 
 
-def main() -> int:
+def perception_node() -> int:
     """Entry point of ``ros2 run perception_node perception_node``."""
     return run_module("perception_node.node")
+
+
+def train_visual() -> int:
+    """Entry point of ``ros2 run perception_node train_visual``."""
+    return run_module("perception_node.train_visual", "main", stopped=130)

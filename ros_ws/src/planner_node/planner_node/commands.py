@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import signal
 import sys
 import time
 from collections.abc import Sequence
@@ -103,14 +102,6 @@ def achieve_goal(arguments: Sequence[str] | None = None) -> int:
         rclpy.try_shutdown()
 
 
-def plan_to_goal_main() -> None:
-    sys.exit(plan_to_goal())
-
-
-def achieve_goal_main() -> None:
-    sys.exit(achieve_goal())
-
-
 def _parser(name: str, description: str, timeout: float) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=name,
@@ -153,9 +144,7 @@ def _read_images(
 
 def _init(arguments: Sequence[str]) -> None:
     prepare_process()
-    # Ctrl-C must reach this program as KeyboardInterrupt, even where a shell starts it with SIGINT
-    # ignored: it still has a goal to cancel.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+    # Ctrl-C must reach this program as KeyboardInterrupt: it still has a goal to cancel.
     rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
 
 

@@ -1,11 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executable ``planner_node``."""
+"""The executables ``planner_node``, ``plan_to_goal``, ``achieve_goal``."""
 
 from __future__ import annotations
 
 from tamp_runtime.executable import run_module
 
 
-def main() -> int:
+def planner_node() -> int:
     """Entry point of ``ros2 run planner_node planner_node``."""
     return run_module("planner_node.node")
+
+
+def plan_to_goal() -> int:
+    """Entry point of ``ros2 run planner_node plan_to_goal``."""
+    return run_module("planner_node.commands", "plan_to_goal", stopped=130)
+
+
+def achieve_goal() -> int:
+    """Entry point of ``ros2 run planner_node achieve_goal``."""
+    return run_module("planner_node.commands", "achieve_goal", stopped=130)

@@ -52,6 +52,7 @@ class Narrator:
         self.pictures = 0
 
     def __call__(self, feedback: AchieveGoal.Feedback) -> None:
+        """Shows what is new in one feedback message."""
         if feedback.plan.plan_id and feedback.plan.plan_id != self._plan_id:
             self._plan_id = feedback.plan.plan_id
             self.close()

@@ -8,19 +8,22 @@ import ctypes
 import os
 import signal
 import subprocess
-import time
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Final
 
 from ament_index_python.packages import get_package_share_path
+from tamp_runtime.domain import reserve_domain
+from tamp_runtime.node_process import EXIT_STUCK
 
 #: The four nodes of the graph; each package's node has the package's name.
 NODES: Final = ("sim_node", "perception_node", "planner_node", "motion_node")
 
-_STOP_TIMEOUT = 8.0
-_PR_SET_PDEATHSIG = 1
+#: A node ends itself before (``STOP_SECONDS``), unless the whole machine stands still [s].
+_STOP_TIMEOUT: Final = 30.0
+_PR_SET_PDEATHSIG: Final = 1
 
 
 class NodeDiedError(RuntimeError):
@@ -34,6 +37,8 @@ class NodeDiedError(RuntimeError):
 
 class NodeProcesses:
     """The graph's processes, as a context manager; each node logs into a file of its own.
+
+    Leaving it stops the nodes; one that hangs then is named on stderr.
 
     Args:
         log_folder: receives ``NODE.log``.
@@ -70,7 +75,10 @@ class NodeProcesses:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self.stop_all()
+        for node, code in self.stop_all().items():
+            if code in (EXIT_STUCK, -signal.SIGKILL):
+                log = self._logs / f"{node}.log"
+                print(f"{node} hung when it was stopped (exit code {code}): {log}", file=sys.stderr)
 
     def start(self, node: str) -> None:
         """Starts one node by ``ros2 run``."""
@@ -87,16 +95,19 @@ class NodeProcesses:
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
-                preexec_fn=_die_with_parent,
+                preexec_fn=_set_up_child,
             )
 
     def stop(self, node: str) -> int:
-        """Stops one node with SIGINT, and by force if it takes too long; returns its exit code."""
+        """Stops one node with SIGINT, and by force if it takes too long; returns its exit code.
+
+        ``EXIT_STUCK`` or the negative number of SIGKILL is that of a node that hung.
+        """
         self._signal(self._processes[node], signal.SIGINT)
         return self._wait(node)
 
     def stop_all(self) -> dict[str, int]:
-        """Stops every node that runs, all at once; returns exit codes by node."""
+        """Stops every node that runs, all at once; returns exit codes by node, as :meth:`stop`."""
         for process in self._processes.values():
             self._signal(process, signal.SIGINT)
         return {node: self._wait(node) for node in list(self._processes)}
@@ -122,16 +133,20 @@ class NodeProcesses:
 
 
 def use_own_domain() -> int:
-    """Chooses a DDS domain that no other graph on this host is likely to use, unless one is set.
+    """Takes a DDS domain that no other graph on this host takes, unless the environment has one.
 
     Returns:
         The domain id, also put into ``ROS_DOMAIN_ID`` for this process and its children.
+
+    Raises:
+        NoFreeDomainError: more graphs run at once than there are domains.
     """
     if "ROS_DOMAIN_ID" not in os.environ:
-        os.environ["ROS_DOMAIN_ID"] = str(60 + (os.getpid() + time.time_ns() // 1000) % 41)
+        os.environ["ROS_DOMAIN_ID"] = str(reserve_domain())
     return int(os.environ["ROS_DOMAIN_ID"])
 
 
-def _die_with_parent() -> None:
-    """The child gets SIGTERM if this process dies without stopping it (Linux)."""
+def _set_up_child() -> None:
+    """The child heeds SIGINT from its start, and gets SIGTERM if this process dies (Linux)."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)

@@ -45,6 +45,7 @@ class TaskResult:
     failure: Failure | None
 
     def to_json(self) -> dict[str, Any]:
+        """The content of ``result.json``."""
         return asdict(self)
 
 

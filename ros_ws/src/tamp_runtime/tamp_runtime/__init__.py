@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What every node shares: starting and stopping, checked parameters, QoS profiles, images."""
+"""What every node shares: starting and stopping, parameters, QoS, messages, domains."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an executable does first: it imports the node, which takes seconds, and runs it.
+"""What every executable does first: it listens to Ctrl-C and imports its program, which is slow.
 
 Imports nothing heavy itself, so that Ctrl-C while the imports run ends the process in order, too.
 """
@@ -7,12 +7,27 @@ Imports nothing heavy itself, so that Ctrl-C while the imports run ends the proc
 from __future__ import annotations
 
 import importlib
+import signal
 
 
-def run_module(name: str) -> int:
-    """Calls ``run`` of a module and returns its exit code; 0 if it is stopped before it runs."""
+def run_module(name: str, function: str = "run", stopped: int = 0) -> int:
+    """Calls a function of a module that is imported now, and returns its exit code.
+
+    Args:
+        stopped: the exit code if SIGINT arrives before the function handles it.
+    """
+    listen_to_interrupts()
     try:
-        code: int = importlib.import_module(name).run()
+        code: int = getattr(importlib.import_module(name), function)()
     except KeyboardInterrupt:  # stopped before there was anything to stop
-        return 0
+        return stopped
     return code
+
+
+def listen_to_interrupts() -> None:
+    """Has SIGINT raise KeyboardInterrupt, even where the parent had it ignored.
+
+    A script starts what it puts into the background so, and Python leaves it at that; but a robot
+    has to stop whoever started it.
+    """
+    signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -12,6 +12,7 @@ import traceback
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from typing import Final
 
 import rclpy
 from rclpy.context import Context
@@ -20,10 +21,15 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 #: After how long a thread that computes passes the interpreter on to one that waits for it [s].
-SWITCH_INTERVAL = 5e-4
+SWITCH_INTERVAL: Final = 5e-4
 
 #: How long the shutdown of a node may take before its process is ended [s].
-STOP_SECONDS = 5.0
+STOP_SECONDS: Final = 5.0
+
+#: The exit code of a process that was ended because its shutdown hung (sysexits.h: EX_SOFTWARE).
+EXIT_STUCK: Final = 70
+
+_POLL_SECONDS: Final = 0.1
 
 
 def prepare_process() -> None:
@@ -43,11 +49,18 @@ def prepare_process() -> None:
 def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threads: int = 4) -> int:
     """Runs a node until SIGINT, SIGTERM or shutdown, and returns the process's exit code.
 
-    0 after a regular stop; 2, with one sentence on stderr, if the node cannot start with its
-    parameters (ValueError or OSError from its constructor).
+    Both signals stop it even where the parent had them ignored, as a script has SIGINT for what it
+    puts into the background.
+
+    Returns:
+        0 after a regular stop; 2, with one sentence on stderr, if the node cannot start with its
+        parameters (ValueError or OSError from its constructor). A process that does not get through
+        its shutdown within ``STOP_SECONDS`` is ended with ``EXIT_STUCK`` (70), and stderr shows
+        where each of its threads was.
     """
     prepare_process()
     # rclpy's own handlers of SIGINT and SIGTERM wake the executor; Python's wait for a message.
+    # They also replace an inherited SIG_IGN.
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.ALL)
     threading.Thread(target=_end_in_time, args=[rclpy.get_default_context()], daemon=True).start()
     executor = MultiThreadedExecutor(num_threads=threads)
@@ -81,11 +94,13 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
 def _end_in_time(context: Context) -> None:
     """Ends a process that does not get through its own shutdown, and shows where it hangs."""
     while context.ok():
-        time.sleep(0.2)
-    time.sleep(STOP_SECONDS)
+        time.sleep(_POLL_SECONDS)
+    # Turns are counted, not time: a machine that stood still meanwhile is not the node's fault.
+    for _ in range(round(STOP_SECONDS / _POLL_SECONDS)):
+        time.sleep(_POLL_SECONDS)
     print(f"not stopped after {STOP_SECONDS:g} s, ended; please report:", file=sys.stderr)
     faulthandler.dump_traceback(all_threads=True)
-    os._exit(0)
+    os._exit(EXIT_STUCK)
 
 
 def _spin(executor: MultiThreadedExecutor, node: Node) -> None:

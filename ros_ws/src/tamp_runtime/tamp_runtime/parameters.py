@@ -50,6 +50,7 @@ class ParameterSpec:
         return self.check(value) if self.check else ""
 
     def descriptor(self) -> ParameterDescriptor:
+        """What ROS tools show of the parameter: meaning, and the range if both ends are given."""
         descriptor = ParameterDescriptor(description=self.description, read_only=self.read_only)
         if self.minimum is None or self.maximum is None:
             return descriptor

@@ -17,6 +17,7 @@ from scene_graph import Move, Place, Relation, SceneGraph, SceneObject, Stacks
 
 
 def object_to_message(item: SceneObject) -> SceneObjectMsg:
+    """One block; poses are in the world frame, sizes in metres, as in :class:`SceneObject`."""
     x, y, z, w = item.quaternion_world
     return SceneObjectMsg(
         name=item.name,
@@ -34,6 +35,7 @@ def object_to_message(item: SceneObject) -> SceneObjectMsg:
 
 
 def object_from_message(message: SceneObjectMsg) -> SceneObject:
+    """One block; the inverse of :func:`object_to_message`."""
     position, orientation, size = message.pose.position, message.pose.orientation, message.size
     return SceneObject(
         name=message.name,
@@ -102,4 +104,5 @@ def moves_to_messages(moves: Sequence[Move], states: Sequence[Stacks]) -> list[M
 
 
 def moves_from_messages(messages: Iterable[MoveMsg]) -> tuple[Move, ...]:
+    """The moves without the names of their blocks, which follow from the state before each."""
     return tuple(Move(item.source, item.target) for item in messages)

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is common to all executables: they can be stopped from their first moment on."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from importlib.metadata import distribution
+from pathlib import Path
+
+import pytest
+
+PACKAGES = [path.parent.name for path in Path(__file__).parents[3].glob("ros_ws/src/*/setup.py")]
+#: What takes long to import.
+HEAVY = ("rclpy", "numpy", "torch", "casadi", "pybullet", "matplotlib")
+
+
+def scripts(package: str) -> dict[str, str]:
+    """The modules of a package's executables, by executable."""
+    points = distribution(package.replace("_", "-")).entry_points
+    return {item.name: item.module for item in points if item.group == "console_scripts"}
+
+
+def test_the_workspace_has_executables() -> None:
+    names = {name for package in PACKAGES for name in scripts(package)}
+    assert {"sim_node", "demo", "achieve_goal", "train_visual"} <= names
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_every_executable_starts_in_a_module_that_is_there_at_once(package: str) -> None:
+    if not (modules := scripts(package)):
+        return
+    assert set(modules.values()) == {f"{package}.executable"}
+    code = f"import sys, {package}.executable; print([m for m in {HEAVY} if m in sys.modules])"
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=120.0, check=True
+    )
+    assert done.stdout == "[]\n"
+
+
+@pytest.mark.parametrize("ignored", [False, True], ids=["heard", "ignored"])
+def test_sigint_while_the_program_is_imported_ends_it_with_the_code_for_that(
+    tmp_path: Path, ignored: bool
+) -> None:
+    (tmp_path / "slow_program.py").write_text(
+        "import time\nprint('importing', flush=True)\ntime.sleep(1000.0)\n"
+    )
+    action = signal.SIG_IGN if ignored else signal.SIG_DFL
+    process = subprocess.Popen(
+        [
+            sys.executable,
+            "-c",
+            "import sys; from tamp_runtime.executable import run_module; "
+            "sys.exit(run_module('slow_program', stopped=130))",
+        ],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": f"{tmp_path}:{os.environ['PYTHONPATH']}"},
+        preexec_fn=lambda: signal.signal(signal.SIGINT, action),
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "importing\n"
+    process.send_signal(signal.SIGINT)
+    _, stderr = process.communicate(timeout=120.0)
+    assert (process.returncode, stderr) == (130, "")
