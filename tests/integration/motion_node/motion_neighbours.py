@@ -30,11 +30,11 @@ from tamp_runtime.qos import LATCHED, RELIABLE, SENSOR_DATA
 from trajectory_msgs.msg import JointTrajectory
 
 from motion_node.node import MotionNode
-from motion_node.robot import PANDA
+from motion_node.robots import PANDA
 
 Array = NDArray[np.float64]
 
-NAMES = PANDA.arm_joints + PANDA.finger_joints
+NAMES = PANDA.joint_names
 HOME = np.array([*PANDA.home, 0.04, 0.04])
 EDGE = 0.045
 COLORS = ("red", "green", "blue", "yellow", "purple")

@@ -31,12 +31,12 @@ def scene(
     yaw: float = 0.1,
     offset: float = 0.004,
     edge: float = EDGE,
-    bases: Sequence[tuple[float, float]] = BASES,
+    places: Sequence[tuple[float, float]] = BASES,
 ) -> SceneGraph:
     """Towers of boxes of the given heights; with ``rng`` a little turned and off their places."""
     names = iter([object_name(color, BOX) for color in COLORS])
     objects, stacks = [], []
-    for count, (x, y) in zip(heights, bases):
+    for count, (x, y) in zip(heights, places):
         stack = []
         for level in range(count):
             name = next(names)
@@ -59,7 +59,7 @@ def scene(
     return SceneGraph(
         tuple(objects),
         up_relations(tuple(stacks)),
-        tuple(Place(index, (x, y, 0.0)) for index, (x, y) in enumerate(bases)),
+        tuple(Place(index, (x, y, 0.0)) for index, (x, y) in enumerate(places)),
     )
 
 

@@ -15,7 +15,7 @@ from motion_node.optimiser import MotionOptimiser, Settings
 from motion_node.path_problem import PathProblem
 from motion_node.phase_bounds import PathSettings
 from motion_node.phases import expand
-from motion_node.robot import PANDA
+from motion_node.robots import PANDA
 from scene_graph import Move
 
 HOME = np.array(PANDA.home)
@@ -77,7 +77,9 @@ def test_keyframes_reach_their_switches(optimiser: MotionOptimiser) -> None:
     keyframes, _ = optimiser.prepare(3)
     for _ in range(5):
         graph = scene(random_heights(rng, 6), rng)
-        phases = expand(graph, random_moves(graph, 4, rng), PANDA, optimiser.settings.phases, 0.006)
+        phases = expand(
+            graph, random_moves(graph, 4, rng), PANDA.gripper, optimiser.settings.phases, 0.006
+        )
         configurations = keyframes.solve(HOME, phases[:-1], Clearances(0.015, 0.0))
         for phase, q in zip(phases, configurations):
             point, yaw = keyframes.features.hand_pose(q)
@@ -92,7 +94,9 @@ def test_dividing_the_path_problem_by_phases_loses_nothing(optimiser: MotionOpti
     """With zero velocity at given switches, the undivided problem has the same solution."""
     rng = np.random.default_rng(6)
     graph = scene((2, 1, 1), rng)
-    phases = expand(graph, random_moves(graph, 2, rng), PANDA, optimiser.settings.phases, 0.006)
+    phases = expand(
+        graph, random_moves(graph, 2, rng), PANDA.gripper, optimiser.settings.phases, 0.006
+    )
     keyframes, divided = optimiser.prepare(3)
     clear = Clearances(0.015, 0.0)
     ends = [HOME, *keyframes.solve(HOME, phases[:-1], clear), HOME]

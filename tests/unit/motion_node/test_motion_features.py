@@ -15,7 +15,7 @@ from motion_node.features import LEAN_ROWS, Feature, Features
 from motion_node.inverse_kinematics import InverseKinematics
 from motion_node.optimiser import MotionOptimiser
 from motion_node.phases import open_tool, read_scene
-from motion_node.robot import PANDA
+from motion_node.robots import PANDA
 
 Array = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ def parameters_of(features: Features, which: str, rng: np.random.Generator) -> A
     if which == "switch":
         return rng.uniform(-0.5, 0.5, 3)
     columns = read_scene(scene((3, 1, 2))).columns()
-    return features.mode(columns, open_tool(PANDA), 0.0, 0.015)
+    return features.mode(columns, open_tool(PANDA.gripper), 0.0, 0.015)
 
 
 @pytest.mark.parametrize("which", ["path", "switch"])
@@ -59,8 +59,8 @@ def test_clearance_is_never_larger_than_the_meshes_distance(
     graph = scene((6, 0, 0))
     oracle = CollisionOracle(graph)
     columns = read_scene(graph).columns()
-    mode = features.mode(columns, open_tool(PANDA), 0.0, 0.0)
-    names = features.path_names(open_tool(PANDA))
+    mode = features.mode(columns, open_tool(PANDA.gripper), 0.0, 0.0)
+    names = features.path_names(open_tool(PANDA.gripper))
     inverse = InverseKinematics(features, optimiser.lower, optimiser.upper)
     links = {
         "hand": ("panda_hand", "panda_link7", "panda_leftfinger", "panda_rightfinger"),
@@ -76,7 +76,7 @@ def test_clearance_is_never_larger_than_the_meshes_distance(
         q = inverse.solve(point, np.array([0.0]), near)[0]
         if np.abs(inverse.residual(q[None], point)).max() > 1e-3:
             continue
-        oracle.set_joints(PANDA.arm_joints + PANDA.finger_joints, np.array([*q, 0.04, 0.04]))
+        oracle.set_joints(PANDA.joint_names, np.array([*q, 0.04, 0.04]))
         gaps = np.array(features.path.value(q, mode)).ravel()
         for body, parts in links.items():
             gap = min(g for g, name in zip(gaps, names) if name == f"clearance of {body} to stack0")
@@ -123,14 +123,14 @@ def test_the_hands_box_covers_hand_and_flange() -> None:
     flange = mesh("collision/link7") - (0, 0, 0.107)
     flange[:, :2] = flange[:, :2] @ turn.T  # link7 to hand: 45 degrees about z
     for vertices in (hand, flange):
-        assert np.abs(vertices[:, 0]).max() < PANDA.hand_half[0] + 1e-3
-        assert np.abs(vertices[:, 1]).max() < PANDA.hand_half[1] + 1e-3
-        assert vertices[:, 2].min() > PANDA.hand_top - 1e-3
-    assert hand[:, 2].max() <= PANDA.palm + 1e-3
+        assert np.abs(vertices[:, 0]).max() < PANDA.gripper.hand_half[0] + 1e-3
+        assert np.abs(vertices[:, 1]).max() < PANDA.gripper.hand_half[1] + 1e-3
+        assert vertices[:, 2].min() > PANDA.gripper.hand_top - 1e-3
+    assert hand[:, 2].max() <= PANDA.gripper.palm + 1e-3
 
 
 def test_rows_have_names(features: Features) -> None:
-    names = features.path_names(open_tool(PANDA))
+    names = features.path_names(open_tool(PANDA.gripper))
     assert len(names) == features.path.rows
     assert names[features.tool_floor_row] == "clearance of hand to the table"
     assert set(names[:LEAN_ROWS]) == {"tilt of the hand"}

@@ -10,7 +10,7 @@ from motion_scenes import scene
 from motion_node.errors import RobotDescriptionError
 from motion_node.kinematics import Kinematics
 from motion_node.optimiser import MotionOptimiser
-from motion_node.robot import PANDA
+from motion_node.robots import PANDA
 
 
 def test_every_link_is_where_pybullet_says(urdf: str) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from motion_node.arm_state import ArmState
 from motion_node.monitor import Monitor, MonitorSettings, Verdict
 from motion_node.optimiser import MotionOptimiser
-from motion_node.robot import PANDA
+from motion_node.robots import PANDA
 from motion_node.trajectory import Trajectory
 from scene_graph import Move
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from motion_node.optimiser import Motion, MotionOptimiser
 from motion_node.phases import HOME, PICK, PLACE
-from motion_node.robot import PANDA
+from motion_node.robots import PANDA
 from scene_graph import Move, SceneGraph, apply_move
 
 HOME_Q = np.array(PANDA.home)

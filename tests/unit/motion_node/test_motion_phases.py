@@ -11,7 +11,7 @@ from motion_scenes import EDGE, scene
 from motion_node.blocks import Block, block_from_object, grasps, placed, wrap_line
 from motion_node.errors import InvalidPlanError
 from motion_node.phases import HOME, PICK, PLACE, Phase, PhaseSettings, expand, way_home
-from motion_node.robot import PANDA
+from motion_node.robots import PANDA
 from scene_graph import Move, Relation, SceneGraph, SceneObject
 
 SQUEEZE = 0.006
@@ -20,7 +20,7 @@ SQUEEZE = 0.006
 def phases_of(
     graph: SceneGraph, moves: list[tuple[int, int]], names: tuple[str, ...] = ()
 ) -> list[Phase]:
-    return expand(graph, [Move(*m) for m in moves], PANDA, PhaseSettings(), SQUEEZE, names)
+    return expand(graph, [Move(*m) for m in moves], PANDA.gripper, PhaseSettings(), SQUEEZE, names)
 
 
 def box(yaw: float = 0.0, size: tuple[float, float, float] = (EDGE,) * 3) -> SceneObject:
@@ -165,7 +165,7 @@ def test_scenes_that_make_no_sense_are_refused() -> None:
 def test_the_way_home_in_the_middle_knows_what_was_done() -> None:
     phases = phases_of(scene((2, 1, 0)), [(0, 2), (1, 2)])
     tops = [
-        [round(column.top / EDGE) for column in way_home(phases, done, PANDA).columns]
+        [round(column.top / EDGE) for column in way_home(phases, done, PANDA.gripper).columns]
         for done in range(3)
     ]
     assert tops == [[2, 1, 0], [1, 1, 1], [1, 0, 2]]

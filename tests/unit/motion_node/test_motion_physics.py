@@ -13,7 +13,7 @@ from motion_node.arm_state import ArmState
 from motion_node.monitor import Monitor, MonitorSettings, Verdict
 from motion_node.optimiser import MotionOptimiser
 from scene_graph import Move, SceneGraph, Stacks, apply_move
-from sim_node.arm_controller import ArmController
+from sim_node.controller import ArmController
 from sim_node.ground_truth import true_scene_graph
 from sim_node.layouts import random_layout
 from sim_node.world import World

@@ -9,7 +9,7 @@ from motion_scenes import scene
 
 from motion_node.optimiser import MotionOptimiser
 from motion_node.phases import HOME, PICK
-from motion_node.robot import PANDA
+from motion_node.robots import PANDA
 from motion_node.timing import JointLimits, shortest_duration, unit_spline
 from motion_node.trajectory import Trajectory
 from scene_graph import Move

@@ -34,7 +34,7 @@ from scene_graph import base_name
 
 from .kinematics import Kinematics
 from .phases import Column, Switch, Tool
-from .robot import RobotGeometry
+from .robots import Arm
 
 Array = NDArray[np.float64]
 
@@ -147,12 +147,12 @@ class Features:
         stacks: m, the number of stacks.
     """
 
-    def __init__(self, kinematics: Kinematics, robot: RobotGeometry, stacks: int) -> None:
+    def __init__(self, kinematics: Kinematics, robot: Arm, stacks: int) -> None:
         self.robot = robot
         self.stacks = stacks
         self.dimension = len(robot.arm_joints)
         self._q = ca.SX.sym("q", self.dimension)
-        links = {robot.hand_link, *(body.link for body in robot.bodies)}
+        links = {robot.gripper.hand_link, *(body.link for body in robot.bodies)}
         self._poses = kinematics.world_from_links(self._q, sorted(links))
 
     @property
@@ -163,8 +163,8 @@ class Features:
     def mode(self, columns: tuple[Column, ...], tool: Tool, floor: float, margin: float) -> Array:
         """Parameters of ``path``, shape (mode_size,): the mode s_k of 5.1 [m]."""
         boxes = [(*column.center, *column.half, column.top) for column in columns]
-        half_x = max(tool.half_x, self.robot.hand_half[0])
-        half_y = max(tool.half_y, self.robot.hand_half[1])
+        half_x = max(tool.half_x, self.robot.gripper.hand_half[0])
+        half_y = max(tool.half_y, self.robot.gripper.hand_half[1])
         return np.array([*np.ravel(boxes), half_x, half_y, tool.bottom, floor, margin])
 
     @cached_property
@@ -174,13 +174,15 @@ class Features:
         parameters = ca.SX.sym("mode", self.mode_size)
         columns = ca.reshape(parameters[: 5 * self.stacks], 5, self.stacks)
         half_x, half_y, bottom, floor, margin = ca.vertsplit(parameters[5 * self.stacks :])
-        hand = _Hand(*self._poses[robot.hand_link], robot.hand_top, bottom, [half_x, half_y])
+        hand = _Hand(
+            *self._poses[robot.gripper.hand_link], robot.gripper.hand_top, bottom, [half_x, half_y]
+        )
         spheres: dict[str, list[tuple[ca.SX, float]]] = {}
         for body in robot.bodies:
             rotation, position = self._poses[body.link]
             center = position + rotation @ ca.DM(body.center)
             spheres.setdefault(body.name, []).append((center, body.radius))
-        rotation, _ = self._poses[robot.hand_link]
+        rotation, _ = self._poses[robot.gripper.hand_link]
         rows = [rotation[0, 2], rotation[1, 2]]
         for column in ca.horzsplit(columns, 1):
             rows.append(hand.gap(column, floor) - margin)
@@ -207,8 +209,8 @@ class Features:
         The reference is (x, y, yaw).
         """
         reference = ca.SX.sym("reference", REFERENCE_SIZE)
-        rotation, position = self._poses[self.robot.hand_link]
-        point = position + rotation[:, 2] * self.robot.tcp_offset
+        rotation, position = self._poses[self.robot.gripper.hand_link]
+        point = position + rotation[:, 2] * self.robot.gripper.tcp_offset
         cos, sin = ca.cos(reference[2]), ca.sin(reference[2])
         rows = ca.vertcat(
             point[0] - reference[0],
@@ -246,8 +248,8 @@ class Features:
 
         Rows: tool centre point, lean of the hand along x and y, fingers' direction along x and y.
         """
-        rotation, position = self._poses[self.robot.hand_link]
-        point = position + rotation[:, 2] * self.robot.tcp_offset
+        rotation, position = self._poses[self.robot.gripper.hand_link]
+        point = position + rotation[:, 2] * self.robot.gripper.tcp_offset
         residual = ca.vertcat(point, rotation[0, 2], rotation[1, 2], rotation[0, 1], rotation[1, 1])
         jacobian = ca.densify(ca.jacobian(residual, self._q))
         return ca.Function("pose", [self._q], [ca.densify(residual), jacobian], {"cse": True})

@@ -25,9 +25,6 @@ Array = NDArray[np.float64]
 
 #: Weight of the distance to the rest posture against the distance between keyframes.
 POSTURE_WEIGHT = 0.02
-#: Steps in which the elbow is swung to either side in search of room, and their length [rad].
-ELBOW_STEPS = 6
-ELBOW_STEP = 0.35
 
 
 @dataclass(frozen=True)
@@ -128,36 +125,28 @@ class Keyframes:
         found = [[_Guess(q, float(s))] for q, s in zip(upright, score(upright))]
         if all(own[0].score == 0.0 for own in found):
             return found
+        seeding = self.features.robot.seeding
         for side in (1.0, -1.0):
             q = upright
-            for step in range(ELBOW_STEPS):
-                swung = q + side * ELBOW_STEP * self.inverse.self_motion(q)
+            for step in range(seeding.swings):
+                swung = q + side * seeding.swing_step * self.inverse.self_motion(q)
                 q = self.inverse.solve(positions, directions, swung, iterations=8)
                 for own, configuration, value in zip(found, q, score(q)):
                     own.append(_Guess(configuration, float(value), step + 1))
         return [sorted(own, key=lambda guess: (guess.score, guess.swing)) for own in found]
 
-    def _turned(self, azimuth: Array, yaws: Array) -> tuple[Array, Array]:
-        """The rest posture turned to azimuths (k,), and the fingers' directions nearest to yaws.
-
-        Turning the first joint turns the hand; the last joint turns it back, and to the yaw. Half a
-        turn more or less is the same grasp: the one nearest the last joint's middle is taken.
-        """
+    def _turned(self, azimuths: Array, yaws: Array) -> tuple[Array, Array]:
+        """See :meth:`Seeding.turned`."""
         _, home_yaw = self.features.hand_pose(self.home)
-        near = np.tile(self.home, (len(yaws), 1))
-        near[:, 0] += azimuth
-        turned = np.mod(azimuth + home_yaw - yaws, np.pi)
-        last = self.home[-1] + turned[:, None] + np.pi * np.arange(-2, 2)
-        middle = (self.lower[-1] + self.upper[-1]) / 2
-        best = np.argmin(np.abs(last - middle), axis=1)
-        near[:, -1] = last[np.arange(len(yaws)), best]
-        return near, home_yaw + azimuth - (near[:, -1] - self.home[-1])
+        return self.features.robot.seeding.turned(
+            self.home, home_yaw, azimuths, yaws, self.lower, self.upper
+        )
 
     def bounds(self, phases: Sequence[Phase], clear: Clearances) -> list[Bounds]:
         """Bounds and parameters of both features at the end of each phase."""
         features = self.features
         path_rows = features.path.rows
-        offset = features.robot.tcp_offset
+        offset = features.robot.gripper.tcp_offset
         modes, references, heights = [], [], []
         for phase in phases:
             assert phase.switch is not None

@@ -35,7 +35,7 @@ from .errors import InvalidPlanError, MotionError
 from .executive import Executive, Plan
 from .optimiser import MotionOptimiser
 from .parameters import PARAMETERS, execution_settings, optimiser_settings, timing_settings
-from .robot import PANDA
+from .robots import PANDA
 from .trajectory import Trajectory
 
 #: Numbers of stacks and of moves for which the problems are built before they are asked for.
@@ -65,7 +65,7 @@ class MotionNode(Node):
         super().__init__("motion_node", **kwargs)
         self._values = declare_parameters(self, PARAMETERS, self._parameters_changed)
         self._robot = replace(PANDA, acceleration=tuple(self._values["acceleration_limits"]))
-        self._names = self._robot.arm_joints + self._robot.finger_joints
+        self._names = self._robot.joint_names
         self._arm = ArmStateBox()
         self._optimiser: MotionOptimiser | None = None
         self._description = ""

@@ -20,7 +20,7 @@ from .kinematics import Kinematics
 from .path_problem import PathProblem, PhasePath
 from .phase_bounds import PathSettings
 from .phases import HOME, Phase, PhaseSettings, expand, read_scene, too_wide, way_home
-from .robot import PANDA, RobotGeometry
+from .robots import PANDA, Arm
 from .timing import JointLimits, TimingSettings, time_paths
 from .trajectory import Trajectory
 
@@ -75,12 +75,14 @@ class MotionOptimiser:
     """
 
     def __init__(
-        self, description: str, robot: RobotGeometry = PANDA, settings: Settings | None = None
+        self, description: str, robot: Arm = PANDA, settings: Settings | None = None
     ) -> None:
         self.robot = robot
         self.settings = settings or Settings()
         self.kinematics = Kinematics(description, robot.arm_joints)
-        self.kinematics.check_links([robot.hand_link, *(body.link for body in robot.bodies)])
+        self.kinematics.check_links(
+            [robot.gripper.hand_link, *(body.link for body in robot.bodies)]
+        )
         margin = self.settings.limit_margin
         self.lower = self.kinematics.lower + margin
         self.upper = self.kinematics.upper - margin
@@ -135,7 +137,12 @@ class MotionOptimiser:
         """
         begin = time.perf_counter()
         phases = expand(
-            graph, moves, self.robot, self.settings.phases, self.settings.squeeze, object_names
+            graph,
+            moves,
+            self.robot.gripper,
+            self.settings.phases,
+            self.settings.squeeze,
+            object_names,
         )
         return self._solve(phases, read_scene(graph).floor, arm, fingers, cancelled, begin)
 
@@ -146,7 +153,7 @@ class MotionOptimiser:
             InfeasibleError: if the path has no solution.
         """
         begin = time.perf_counter()
-        home = way_home(motion.phases, moves_done, self.robot)
+        home = way_home(motion.phases, moves_done, self.robot.gripper)
         return self._solve([home], motion.floor, arm, fingers, lambda: False, begin)
 
     def _solve(
@@ -184,8 +191,8 @@ class MotionOptimiser:
             check()
             paths += problem.solve([phase], [start, goal], clear)
         check()
-        names = self.robot.arm_joints + self.robot.finger_joints
+        names = self.robot.joint_names
         trajectory = time_paths(
-            paths, names, self.limits, self.timing, fingers, self.robot.finger_travel
+            paths, names, self.limits, self.timing, fingers, self.robot.gripper.finger_travel
         )
         return Motion(tuple(phases), tuple(paths), trajectory, floor, time.perf_counter() - begin)

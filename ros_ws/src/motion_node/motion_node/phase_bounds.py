@@ -76,12 +76,14 @@ class PhaseBounds:
         self.last = self._switch_end(phase.switch) if phase.switch else None
 
     def _tool_bottom(self, tcp_height: float) -> float:
-        return tcp_height + self.features.robot.tcp_offset - self.phase.tool.bottom
+        return tcp_height + self.features.robot.gripper.tcp_offset - self.phase.tool.bottom
 
     def _switch_end(self, switch: Switch) -> _End:
         robot, phase = self.features.robot, self.phase
         x, y, z = switch.position_world
-        columns = lowered(phase.columns, switch, phase.tool, robot.tcp_offset, self.clear.margin)
+        columns = lowered(
+            phase.columns, switch, phase.tool, robot.gripper.tcp_offset, self.clear.margin
+        )
         above_own = phase.columns[switch.stack].top - self._tool_bottom(z) + self._reserve + 0.002
         lift = max(self.settings.lift, above_own)
         return _End(np.array([x, y, switch.yaw]), z, lift, columns)
@@ -153,7 +155,7 @@ class PhaseBounds:
         """
         settings = self.settings
         tops = [column.top for column in self.phase.columns]
-        hanging = self.phase.tool.bottom - self.features.robot.tcp_offset
+        hanging = self.phase.tool.bottom - self.features.robot.gripper.tcp_offset
         across = max(tops) + hanging + self._reserve + 0.01 + higher
         share = 1.3 * settings.vertical / settings.steps
         ends = ((self.first, self.start_q, share), (self.last, self.goal_q, 1 - share))

@@ -17,7 +17,7 @@ from scene_graph import Move, Place, SceneGraph, SceneGraphError, base_name
 
 from .blocks import Block, Grasp, block_from_object, grasps, placed
 from .errors import InvalidPlanError
-from .robot import RobotGeometry
+from .robots import Gripper
 
 PICK: Final = "pick"
 PLACE: Final = "place"
@@ -136,22 +136,22 @@ def _column(stack: Sequence[Block], place: Place, floor: float) -> Column:
     )
 
 
-def open_tool(robot: RobotGeometry) -> Tool:
+def open_tool(gripper: Gripper) -> Tool:
     """The empty hand with its fingers fully open."""
     return Tool(
-        half_x=robot.finger_thickness,
-        half_y=robot.finger_travel + robot.finger_depth,
-        bottom=robot.finger_tip,
-        finger=robot.finger_travel,
+        half_x=gripper.finger_thickness,
+        half_y=gripper.finger_travel + gripper.finger_depth,
+        bottom=gripper.finger_tip,
+        finger=gripper.finger_travel,
     )
 
 
-def _holding_tool(robot: RobotGeometry, block: Block, grasp: Grasp, squeeze: float) -> Tool:
+def _holding_tool(gripper: Gripper, block: Block, grasp: Grasp, squeeze: float) -> Tool:
     below_tcp = block.size[2] / 2 + grasp.height
     return Tool(
-        half_x=max(robot.finger_thickness, grasp.depth / 2),
-        half_y=grasp.width / 2 + robot.finger_depth,
-        bottom=max(robot.finger_tip, robot.tcp_offset + below_tcp),
+        half_x=max(gripper.finger_thickness, grasp.depth / 2),
+        half_y=grasp.width / 2 + gripper.finger_depth,
+        bottom=max(gripper.finger_tip, gripper.tcp_offset + below_tcp),
         held=block.name,
         finger=max(0.0, grasp.width / 2 - squeeze),
     )
@@ -188,7 +188,7 @@ def read_scene(graph: SceneGraph) -> _Scene:
 def expand(
     graph: SceneGraph,
     moves: Sequence[Move],
-    robot: RobotGeometry,
+    gripper: Gripper,
     settings: PhaseSettings,
     squeeze: float,
     object_names: Sequence[str] = (),
@@ -207,7 +207,10 @@ def expand(
     count = len(scene.stacks)
     phases: list[Phase] = []
     start: Switch | None = None
-    below, above = robot.finger_tip - robot.tcp_offset, robot.tcp_offset - robot.palm
+    below, above = (
+        gripper.finger_tip - gripper.tcp_offset,
+        gripper.tcp_offset - gripper.palm,
+    )
     for index, move in enumerate(moves):
         source, target = move.source, move.target
         for stack in (source, target):
@@ -232,8 +235,8 @@ def expand(
         options = grasps(block, below, above)
         fitting = [option for option in options if option.width <= settings.max_grasp_width]
         grasp = (fitting or options)[0]
-        tool = open_tool(robot)
-        holding = _holding_tool(robot, block, grasp, squeeze)
+        tool = open_tool(gripper)
+        holding = _holding_tool(gripper, block, grasp, squeeze)
         x, y, z = block.position_world
         pick = Switch((x, y, z + grasp.height), grasp.yaw, source)
         phases.append(
@@ -247,18 +250,32 @@ def expand(
         place = Switch((x, y, z + grasp.height + settings.place_gap), 0.0, target)
         phases.append(
             Phase(
-                PLACE, index, block.name, place, pick, holding, scene.columns(), robot.finger_travel
+                PLACE,
+                index,
+                block.name,
+                place,
+                pick,
+                holding,
+                scene.columns(),
+                gripper.finger_travel,
             )
         )
         scene.stacks[target].append(after)
         start = place
     home = Phase(
-        HOME, len(moves), "", None, start, open_tool(robot), scene.columns(), robot.finger_travel
+        HOME,
+        len(moves),
+        "",
+        None,
+        start,
+        open_tool(gripper),
+        scene.columns(),
+        gripper.finger_travel,
     )
     return [*phases, home]
 
 
-def way_home(phases: Sequence[Phase], moves_done: int, robot: RobotGeometry) -> Phase:
+def way_home(phases: Sequence[Phase], moves_done: int, gripper: Gripper) -> Phase:
     """The way home after ``moves_done`` complete moves, from wherever the empty hand is.
 
     The blocks stand as the phases predict; with none of the moves done, as they were seen.
@@ -266,7 +283,7 @@ def way_home(phases: Sequence[Phase], moves_done: int, robot: RobotGeometry) -> 
     following = [phase for phase in phases if phase.move >= moves_done]
     first = following[0] if following else phases[-1]
     return replace(
-        phases[-1], start=None, columns=first.columns, tool=open_tool(robot), move=first.move
+        phases[-1], start=None, columns=first.columns, tool=open_tool(gripper), move=first.move
     )
 
 
