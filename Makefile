@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test lint lint-docker clean lock train-visual eval-visual eval-tasks results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-visual eval-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -27,7 +27,10 @@ lint-docker: setup  ## hadolint on the Dockerfile; nothing is built
 	@$(VENV)/bin/hadolint docker/Dockerfile
 
 test: setup  ## the whole test suite
-	@$(RUN) pytest $(ARGS)
+	@$(RUN) pytest --numprocesses 2 --dist loadfile $(ARGS)
+
+soak-tests: setup  ## the suite again and again, half of them on a busy machine; RUNS= RESUME=1 QUICK=1
+	@$(RUN) python benchmarks/suite.py $(if $(RUNS),--runs $(RUNS)) $(if $(RESUME),--resume)
 
 train-visual: setup  ## train the visual module G without labels; resumable
 	@$(RUN) ros2 run sim_node render_dataset --out data/states_5 --blocks 5

@@ -78,7 +78,7 @@ def write_result(
     content = {
         "name": name,
         "command": command,
-        "commit": _commit(),
+        "commit": source_commit(),
         "date": date.today().isoformat(),
         "machine": _machine(),
         "seconds": round(seconds, 1),
@@ -111,13 +111,15 @@ def wilson_interval(successes: int, n: int) -> tuple[float, float]:
     return float(interval.low), float(interval.high)
 
 
-def _commit() -> str:
+def source_commit() -> str:
+    """The commit of what can be measured, marked where files were changed since."""
+
     def git(*arguments: str) -> str:
         return subprocess.run(
             ["git", *arguments], capture_output=True, text=True, check=False
         ).stdout.strip()
 
-    sources = ("ros_ws", "benchmarks/*.py")
+    sources = ("ros_ws", "benchmarks/*.py", "tests")
     changed = git("status", "--porcelain", "--untracked-files=no", "--", *sources)
     return git("rev-parse", "--short", "HEAD") + ("+changes" if changed else "")
 
