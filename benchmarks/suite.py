@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Final
 
 from results_file import print_rows, quick, source_commit, write_result
-from suite_report import SuiteRun, FailedTest, make_rows, read_junit, read_run
+from suite_report import FailedTest, SuiteRun, make_rows, read_junit, read_run
 from tamp_runtime.executable import listen_to_interrupts
 from tqdm import tqdm
 

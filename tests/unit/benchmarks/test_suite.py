@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 import suite
-from suite_report import SuiteRun, FailedTest, make_rows, read_junit, read_run
+from suite_report import FailedTest, SuiteRun, make_rows, read_junit, read_run
 
 TESTS = """
 import pytest
