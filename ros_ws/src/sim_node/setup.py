@@ -17,8 +17,8 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "sim_node = sim_node.executable:main",
-            "render_dataset = sim_node.render_dataset:main",
+            "sim_node = sim_node.executable:sim_node",
+            "render_dataset = sim_node.executable:render_dataset",
         ]
     },
 )

@@ -21,8 +21,11 @@ from tamp_runtime.messages.scene_graph import graph_from_message
 from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+from sim_node.arm_models import PANDA
 from sim_node.node import SimNode
-from sim_node.world import HOME, JOINTS
+
+HOME = PANDA.home_positions
+JOINTS = PANDA.joints
 
 TOPICS: dict[str, tuple[type, Any]] = {
     "camera/image_raw": (Image, NEWEST),
@@ -146,8 +149,8 @@ def test_reset_takes_a_seed_or_a_layout_and_refuses_nonsense(
 
 
 def test_it_follows_a_trajectory_to_its_end(ros_context: Any, neighbour: Neighbour) -> None:
-    goal = np.array(HOME) + [0.4, 0.2, 0.0, 0.0, 0.0, 0.0, 0.3, -0.01, -0.01]
-    neighbour.trajectory.publish(trajectory([(0.0, np.array(HOME)), (1.0, goal)]))
+    goal = HOME + [0.4, 0.2, 0.0, 0.0, 0.0, 0.0, 0.3, -0.01, -0.01]
+    neighbour.trajectory.publish(trajectory([(0.0, HOME), (1.0, goal)]))
     ros_context.wait_until(
         lambda: np.abs(neighbour.position() - goal).max() < 0.005, what="the goal"
     )
@@ -156,13 +159,13 @@ def test_it_follows_a_trajectory_to_its_end(ros_context: Any, neighbour: Neighbo
 @pytest.mark.parametrize(
     "bad",
     [
-        trajectory([(0.0, np.array(HOME)), (1.0, np.full(9, np.nan))]),
-        trajectory([(0.0, np.array(HOME)), (0.0, np.array(HOME))]),
-        trajectory([(0.0, np.array(HOME) + 0.3), (1.0, np.array(HOME))]),
-        trajectory([(0.0, np.array(HOME)), (0.01, np.array(HOME) + [0.5, *[0.0] * 8])]),
-        trajectory([(0.0, np.array(HOME)[:4])], names=list(JOINTS)[:4]),
-        trajectory([(0.0, np.array(HOME)[:4])]),
-        trajectory([(0.0, np.array(HOME))], names=[f"joint{i}" for i in range(9)]),
+        trajectory([(0.0, HOME), (1.0, np.full(9, np.nan))]),
+        trajectory([(0.0, HOME), (0.0, HOME)]),
+        trajectory([(0.0, HOME + 0.3), (1.0, HOME)]),
+        trajectory([(0.0, HOME), (0.01, HOME + [0.5, *[0.0] * 8])]),
+        trajectory([(0.0, HOME[:4])], names=list(JOINTS)[:4]),
+        trajectory([(0.0, HOME[:4])]),
+        trajectory([(0.0, HOME)], names=[f"joint{i}" for i in range(9)]),
     ],
     ids=["nan", "time", "far start", "too fast", "missing joints", "too few values", "unknown"],
 )

@@ -16,7 +16,7 @@ from perception_node.masks import object_images
 from perception_node.train_visual import main
 from perception_node.training import Trainer, TrainingConfig
 from perception_node.weights import load_weights, read_metadata
-from sim_node.render_dataset import render_shard
+from sim_node.data_sets import render_shard
 from sim_node.world import World
 
 TINY = TrainingConfig(steps=6, batch_scenes=2, checkpoint_every=3)

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import numpy as np
-from builtin_interfaces.msg import Duration, Time
+from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from sensor_msgs.msg import CameraInfo, JointState
 from std_msgs.msg import Header
 from tamp_runtime.messages.images import image_from_array
+from tamp_runtime.messages.stamps import seconds
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from .camera import Frame
@@ -19,10 +20,6 @@ from .trajectory import TrajectoryError
 
 WORLD_FRAME = "world"
 CAMERA_FRAME = "camera_optical_frame"
-
-
-def time_message(nanoseconds: int) -> Time:
-    return Time(sec=nanoseconds // 10**9, nanosec=nanoseconds % 10**9)
 
 
 def camera_messages(frame: Frame, config: CameraConfig, stamp: Time) -> tuple:
@@ -69,6 +66,7 @@ def joint_state_message(
     efforts: NDArray[np.float64],
     stamp: Time,
 ) -> JointState:
+    """Positions, velocities and efforts of the named joints, shapes (n,) [rad, m; …]."""
     return JointState(
         header=Header(stamp=stamp),
         name=list(names),
@@ -98,13 +96,9 @@ def trajectory_arrays(
             raise TrajectoryError(
                 f"point {index} has {len(point.velocities)} velocities for {joints} joints"
             )
-    times = np.array([_seconds(point.time_from_start) for point in points])
+    times = np.array([seconds(point.time_from_start) for point in points])
     positions = np.array([point.positions for point in points], dtype=float)
     velocities = (
         np.array([point.velocities for point in points], dtype=float) if has_velocities else None
     )
     return times, positions, velocities
-
-
-def _seconds(duration: Duration) -> float:
-    return duration.sec + 1e-9 * duration.nanosec

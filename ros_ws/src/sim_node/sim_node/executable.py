@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executable ``sim_node``."""
+"""The executables ``sim_node``, ``render_dataset``."""
 
 from __future__ import annotations
 
 from tamp_runtime.executable import run_module
 
 
-def main() -> int:
+def sim_node() -> int:
     """Entry point of ``ros2 run sim_node sim_node``."""
     return run_module("sim_node.node")
+
+
+def render_dataset() -> int:
+    """Entry point of ``ros2 run sim_node render_dataset``."""
+    return run_module("sim_node.data_sets", "main", stopped=130)

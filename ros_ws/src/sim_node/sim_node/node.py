@@ -19,28 +19,32 @@ from std_msgs.msg import Header, String
 from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import ResetScene
 from tamp_runtime.messages.scene_graph import graph_to_message
+from tamp_runtime.messages.stamps import stamp_from_nanoseconds
 from tamp_runtime.node_process import run_node
-from tamp_runtime.parameters import ParameterSpec, declare_parameters
+from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
 from trajectory_msgs.msg import JointTrajectory
 
-from scene_graph import Stacks, format_stacks
+from scene_graph import format_stacks
 
-from .arm_controller import ArmController
+from .arm_models import ARM_MODELS
+from .controller import ArmController
 from .conversions import (
     WORLD_FRAME,
     camera_messages,
     extrinsics_message,
     joint_state_message,
-    time_message,
     trajectory_arrays,
 )
 from .ground_truth import true_scene_graph
 from .layouts import LayoutError, format_layout, parse_layout, random_layout
+from .parameters import PARAMETERS, first_layout
 from .robot_description import robot_description
 from .scene import SceneConfig
 from .trajectory import TrajectoryError
-from .world import JOINTS, World
+from .world import World
+
+__all__ = ["PARAMETERS", "SimNode", "run"]
 
 #: Physics steps between two joint states (60 Hz) and joint states between two pictures (10 Hz).
 STEPS_PER_STATE = 4
@@ -48,30 +52,9 @@ STATES_PER_FRAME = 6
 
 _COMMAND_TIMEOUT = 30.0
 
-PARAMETERS = (
-    ParameterSpec(
-        "real_time_factor",
-        1.0,
-        "simulated seconds per second; 0: as fast as it goes",
-        minimum=0.0,
-        maximum=1000.0,
-    ),
-    ParameterSpec(
-        "seed", 0, "seed of the first scene", minimum=0, maximum=2**31 - 1, read_only=True
-    ),
-    ParameterSpec("blocks", 5, "blocks in the first scene", minimum=3, maximum=7, read_only=True),
-    ParameterSpec(
-        "layout",
-        [""],
-        "first scene, one string a stack from the left, names from the bottom, comma separated; "
-        "all empty: random by seed",
-        read_only=True,
-    ),
-)
-
 
 class SimNode(Node):
-    """A pybullet world with a Panda, blocks and a camera.
+    """A pybullet world with an arm, blocks and a camera.
 
     Publishes:
         camera/image_raw, camera/depth/image_raw, camera/segmentation (sensor_msgs/Image) and
@@ -94,10 +77,10 @@ class SimNode(Node):
         values = declare_parameters(self, PARAMETERS, self._parameters_changed)
         self._real_time_factor: float = values["real_time_factor"]
         self._config = SceneConfig()
-        layout = self._first_layout(values)
+        layout = first_layout(values, self._config.stack_count)
         self._create_interfaces()
 
-        self._world = World(self._config)
+        self._world = World(self._config, arm=ARM_MODELS[values["robot"]])
         self._arm = ArmController(self._world)
         self._world.reset(layout, values["seed"])
         # The clock starts at the host's time, so that it goes on forward when the node restarts.
@@ -111,18 +94,13 @@ class SimNode(Node):
         self._thread.start()
 
     def destroy_node(self) -> None:
+        """Ends the physics thread, then the node."""
         self._stopping.set()
         self._thread.join(timeout=5.0)
         self._world.close()
         super().destroy_node()
 
     # Set-up
-
-    def _first_layout(self, values: dict[str, Any]) -> Stacks:
-        """Raises ValueError for a layout that is impossible."""
-        if any(values["layout"]):
-            return parse_layout(values["layout"], self._config.stack_count)
-        return random_layout(values["seed"], values["blocks"], self._config.stack_count)
 
     def _create_interfaces(self) -> None:
         self._image = self.create_publisher(Image, "camera/image_raw", NEWEST)
@@ -143,7 +121,7 @@ class SimNode(Node):
     def _publish_descriptions(self) -> None:
         extrinsics = extrinsics_message(self._config.camera, self._stamp())
         self._extrinsics.publish(extrinsics)
-        self._description.publish(String(data=robot_description()))
+        self._description.publish(String(data=robot_description(self._world.arm)))
         try:
             from tf2_msgs.msg import TFMessage
         except ImportError:  # not among the PyPI packages
@@ -227,12 +205,14 @@ class SimNode(Node):
                 self.get_logger().fatal(f"the physics stopped:\n{traceback.format_exc()}")
 
     def _stamp(self) -> Any:
-        return time_message(self._start_nanoseconds + round(self._world.time * 1e9))
+        return stamp_from_nanoseconds(self._start_nanoseconds + round(self._world.time * 1e9))
 
     def _publish_state(self) -> None:
         stamp = self._stamp()
         self._clock_topic.publish(Clock(clock=stamp))
-        self._joint_states.publish(joint_state_message(JOINTS, *self._world.joint_state(), stamp))
+        self._joint_states.publish(
+            joint_state_message(self._world.arm.joints, *self._world.joint_state(), stamp)
+        )
 
     def _publish_frame(self) -> None:
         stamp = self._stamp()

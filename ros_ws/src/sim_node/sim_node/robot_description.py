@@ -5,10 +5,14 @@ from __future__ import annotations
 
 import re
 
-from .world import URDF_PATH
+from .arm_models import PANDA, ArmModel
 
 
-def robot_description() -> str:
-    """URDF text; ``package://`` of pybullet's data becomes absolute ``file://``."""
-    text = URDF_PATH.read_text(encoding="utf-8")
-    return re.sub(r'filename="(?:package://)?', f'filename="file://{URDF_PATH.parent}/', text)
+def robot_description(arm: ArmModel = PANDA) -> str:
+    """URDF text; ``package://`` of pybullet's data becomes absolute ``file://``.
+
+    Raises:
+        OSError: if the arm's URDF cannot be read.
+    """
+    text = arm.urdf.read_text(encoding="utf-8")
+    return re.sub(r'filename="(?:package://)?', f'filename="file://{arm.urdf.parent}/', text)

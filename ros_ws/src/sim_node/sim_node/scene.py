@@ -8,6 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from scene_graph import ROW_OF_THREE
+from scene_graph.places import Point
+
 
 @dataclass(frozen=True)
 class CameraConfig:
@@ -67,11 +70,7 @@ class SceneConfig:
         position_jitter, yaw_jitter: blocks are put down up to this far from the ideal [m, rad].
     """
 
-    stack_positions: tuple[tuple[float, float, float], ...] = (
-        (0.5, -0.15, 0.0),
-        (0.5, 0.0, 0.0),
-        (0.5, 0.15, 0.0),
-    )
+    stack_positions: tuple[Point, ...] = ROW_OF_THREE
     block_size: float = 0.045
     block_mass: float = 0.08
     position_jitter: float = 0.002

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The simulated world: a table, blocks under gravity, and a Franka Panda with its gripper.
+"""The simulated world: a table, blocks under gravity, and an arm with its gripper.
 
 Nothing holds a block but contact and friction: there are no constraints between bodies, no
 teleports after a reset, and gravity is always on.
@@ -7,37 +7,47 @@ teleports after a reset, and gravity is always on.
 
 from __future__ import annotations
 
-from pathlib import Path
 from types import TracebackType
-from typing import Any, Final
 
 import numpy as np
 import pybullet
-import pybullet_data
 from numpy.typing import NDArray
 
-from scene_graph import COLORS, CYLINDER, SPHERE, Stacks, split_object_name
+from scene_graph import Stacks
 
+from .arm_models import PANDA, ArmModel
+from .bodies import create_block, create_table
 from .camera import CameraRenderer, Frame
 from .layouts import check_layout
+from .meshes.light_urdf import light_urdf
 from .scene import SceneConfig
-
-URDF_PATH: Final = Path(pybullet_data.getDataPath()) / "franka_panda" / "panda.urdf"
-ARM_JOINTS: Final = tuple(f"panda_joint{number}" for number in range(1, 8))
-FINGER_JOINTS: Final = ("panda_finger_joint1", "panda_finger_joint2")
-JOINTS: Final = ARM_JOINTS + FINGER_JOINTS
-#: Joint positions after a reset [rad, m]: hand up and back, fingers open, no block hidden.
-HOME: Final = (0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785, 0.04, 0.04)
-
-_TABLE_HALF_EXTENTS: Final = (0.5, 0.6, 0.02)
-_TABLE_CENTRE: Final = (0.35, 0.0, -0.02)
 
 
 class World:
-    """The world in a physics server of its own; use as a context manager or call ``close``."""
+    """The world in a physics server of its own; use as a context manager or call ``close``.
 
-    def __init__(self, config: SceneConfig | None = None, timestep: float = 1.0 / 240.0) -> None:
+    Attributes:
+        config: what stands where.
+        arm: which arm it is; arrays over its n joints are in the order of ``arm.joints``.
+        timestep: of the physics [s].
+        time: simulated time since the world was made [s].
+        client, robot: pybullet's ids of the physics server and of the arm's body.
+        joint_indices: pybullet's numbers of the arm's joints, n of them.
+        lower, upper, max_effort, max_velocity: limits of the joints by the URDF, shape (n,) [rad
+            or m; N·m or N; rad/s or m/s].
+
+    Raises:
+        OSError: if the arm's meshes cannot be read, or their light copies not be written.
+    """
+
+    def __init__(
+        self,
+        config: SceneConfig | None = None,
+        timestep: float = 1.0 / 240.0,
+        arm: ArmModel = PANDA,
+    ) -> None:
         self.config = config or SceneConfig()
+        self.arm = arm
         self.timestep = timestep
         self.client = pybullet.connect(pybullet.DIRECT)
         self._bodies: dict[str, int] = {}
@@ -47,9 +57,9 @@ class World:
             fixedTimeStep=timestep, numSolverIterations=100, physicsClientId=self.client
         )
         pybullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
-        self._table = self._create_table()
+        create_table(self.client)
         self.robot = pybullet.loadURDF(
-            str(URDF_PATH),
+            str(light_urdf(arm.urdf)),
             useFixedBase=True,
             flags=pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT,
             physicsClientId=self.client,
@@ -59,13 +69,12 @@ class World:
             for index in range(pybullet.getNumJoints(self.robot, physicsClientId=self.client))
         ]
         by_name = {info[1].decode(): info for info in infos}
-        self.joint_indices = [by_name[name][0] for name in JOINTS]
-        #: Limits by joint, shape (9,) [rad or m, rad/s or m/s, N·m or N].
-        self.lower = np.array([by_name[name][8] for name in JOINTS])
-        self.upper = np.array([by_name[name][9] for name in JOINTS])
-        self.max_effort = np.array([by_name[name][10] for name in JOINTS])
-        self.max_velocity = np.array([by_name[name][11] for name in JOINTS])
-        self._couple_fingers()
+        joints = [by_name[name] for name in arm.joints]
+        self.joint_indices = [info[0] for info in joints]
+        self.lower, self.upper, self.max_effort, self.max_velocity = (
+            np.array([info[column] for info in joints]) for column in range(8, 12)
+        )
+        self._couple_fingers(*(by_name[name][0] for name in arm.finger_joints))
         self._camera = CameraRenderer(self.client, self.config.camera)
         self._send_home()
 
@@ -119,7 +128,7 @@ class World:
                 yaw = rng.uniform(-config.yaw_jitter, config.yaw_jitter)
                 height = (level + 0.5) * config.block_size + level * 1e-4
                 position = np.add(base, [*offset, height])
-                self._bodies[name] = self._create_block(name, position, yaw)
+                self._bodies[name] = create_block(self.client, name, config, position, yaw)
         shuffled = rng.permutation(len(self._bodies)) + 1
         self._labels = {name: int(label) for name, label in zip(self._bodies, shuffled)}
         for _ in range(round(settle_time / self.timestep)):
@@ -128,11 +137,11 @@ class World:
     def command(
         self, positions: NDArray[np.float64], velocities: NDArray[np.float64] | None = None
     ) -> None:
-        """Targets of the joint motors until the next command, shapes (9,), within the limits.
+        """Targets of the joint motors until the next command, shapes (n,), within the limits.
 
         The motors apply at most the URDF's torques and forces.
         """
-        velocities = np.zeros(len(JOINTS)) if velocities is None else velocities
+        velocities = np.zeros_like(positions) if velocities is None else velocities
         positions = np.clip(positions, self.lower, self.upper)
         velocities = np.clip(velocities, -self.max_velocity, self.max_velocity)
         pybullet.setJointMotorControlArray(
@@ -142,8 +151,8 @@ class World:
             targetPositions=positions,
             targetVelocities=velocities,
             forces=self.max_effort,
-            positionGains=[0.4] * 7 + [0.2] * 2,
-            velocityGains=[1.0] * 9,
+            positionGains=self.arm.gains,
+            velocityGains=np.ones_like(positions),
             physicsClientId=self.client,
         )
 
@@ -153,7 +162,7 @@ class World:
         self.time += self.timestep
 
     def joint_state(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Positions, velocities and efforts in the order of ``JOINTS``, shapes (9,)."""
+        """Positions, velocities and efforts of the joints, shapes (n,)."""
         states = pybullet.getJointStates(
             self.robot, self.joint_indices, physicsClientId=self.client
         )
@@ -189,65 +198,13 @@ class World:
         return self._camera.render({self._bodies[name]: self._labels[name] for name in self.names})
 
     def _send_home(self) -> None:
-        for index, position in zip(self.joint_indices, HOME):
+        home = self.arm.home_positions
+        for index, position in zip(self.joint_indices, home):
             pybullet.resetJointState(self.robot, index, position, 0.0, physicsClientId=self.client)
-        self.command(np.array(HOME))
+        self.command(home)
 
-    def _create_table(self) -> int:
-        collision = pybullet.createCollisionShape(
-            pybullet.GEOM_BOX, halfExtents=_TABLE_HALF_EXTENTS, physicsClientId=self.client
-        )
-        visual = pybullet.createVisualShape(
-            pybullet.GEOM_BOX,
-            halfExtents=_TABLE_HALF_EXTENTS,
-            rgbaColor=(0.78, 0.74, 0.68, 1.0),
-            physicsClientId=self.client,
-        )
-        table = pybullet.createMultiBody(
-            0.0, collision, visual, _TABLE_CENTRE, physicsClientId=self.client
-        )
-        pybullet.changeDynamics(
-            table, -1, lateralFriction=0.9, restitution=0.0, physicsClientId=self.client
-        )
-        return int(table)
-
-    def _create_block(self, name: str, position_world: NDArray[np.float64], yaw: float) -> int:
-        color, shape = split_object_name(name)
-        half = 0.5 * self.config.block_size
-        if shape == CYLINDER:
-            kind = pybullet.GEOM_CYLINDER
-            collision_size: dict[str, Any] = {"radius": half, "height": 2.0 * half}
-            visual_size: dict[str, Any] = {"radius": half, "length": 2.0 * half}
-        elif shape == SPHERE:
-            kind = pybullet.GEOM_SPHERE
-            collision_size = visual_size = {"radius": half}
-        else:
-            kind = pybullet.GEOM_BOX
-            collision_size = visual_size = {"halfExtents": [half] * 3}
-        body = pybullet.createMultiBody(
-            self.config.block_mass,
-            pybullet.createCollisionShape(kind, physicsClientId=self.client, **collision_size),
-            pybullet.createVisualShape(
-                kind, rgbaColor=(*COLORS[color], 1.0), physicsClientId=self.client, **visual_size
-            ),
-            position_world,
-            pybullet.getQuaternionFromEuler((0.0, 0.0, yaw)),
-            physicsClientId=self.client,
-        )
-        pybullet.changeDynamics(
-            body,
-            -1,
-            lateralFriction=0.9,
-            spinningFriction=0.003,
-            rollingFriction=1e-4 if shape == SPHERE else 0.0,
-            restitution=0.0,
-            physicsClientId=self.client,
-        )
-        return int(body)
-
-    def _couple_fingers(self) -> None:
+    def _couple_fingers(self, left: int, right: int) -> None:
         """The real hand drives both fingers with one motor; a gear joint does the same here."""
-        left, right = self.joint_indices[7:]
         gear = pybullet.createConstraint(
             self.robot,
             left,

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from .wavefront import Mesh, face_normals
 
 #: Weight of the planes that hold borders and seams of material in place.
-_BORDER_WEIGHT = 10.0
+_BORDER_WEIGHT = 1000.0
 #: A collapse may not turn a face further than this, else surfaces would fold over.
 _LEAST_TURN_COSINE = 0.5
 
@@ -46,10 +46,8 @@ def simplify(mesh: Mesh, tolerance: float) -> Mesh:
     )
     refused = np.zeros(0, dtype=np.int64)
     while True:
-        edges = _edges(surface.faces)
-        edges = edges[~np.isin(edges[:, 0] * count + edges[:, 1], refused)]
-        if not len(edges):
-            break
+        keys = _edge_keys(surface.faces, count)
+        edges = np.stack(np.divmod(keys[~np.isin(keys, refused)], count), axis=1)
         targets, costs = _targets(surface, edges)
         allowed = costs <= tolerance**2
         if not allowed.any():
@@ -115,10 +113,10 @@ def _border(mesh: Mesh) -> list[tuple[int, int, int]]:
     ]
 
 
-def _edges(faces: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Each edge once, (smaller, larger) vertex, shape (e, 2)."""
-    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    return np.unique(np.sort(edges, axis=1), axis=0)
+def _edge_keys(faces: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """Each edge once, as smaller vertex · count + larger vertex, shape (e,)."""
+    following = np.roll(faces, -1, axis=1)
+    return np.unique(np.minimum(faces, following) * count + np.maximum(faces, following))
 
 
 def _targets(
@@ -130,7 +128,7 @@ def _targets(
     areas = np.maximum(surface.areas[first] + surface.areas[second], 1e-300)
     middle = 0.5 * (surface.vertices[first] + surface.vertices[second])
     # The best point is far away where the surface is flat; a little pull keeps it at the edge.
-    pull = 1e-3 * np.trace(quadrics[:, :3, :3], axis1=1, axis2=2) + 1e-30
+    pull = 1e-5 * np.trace(quadrics[:, :3, :3], axis1=1, axis2=2) + 1e-30
     matrix = quadrics[:, :3, :3] + pull[:, None, None] * np.eye(3)
     side = pull[:, None] * middle - quadrics[:, :3, 3]
     targets = np.linalg.solve(matrix, side[:, :, None])[:, :, 0]
@@ -175,9 +173,7 @@ def _folds(
     return result
 
 
-def _collapse(
-    surface: _Surface, edges: NDArray[np.int64], targets: NDArray[np.float64]
-) -> None:
+def _collapse(surface: _Surface, edges: NDArray[np.int64], targets: NDArray[np.float64]) -> None:
     first, second = edges.T
     surface.vertices[first] = targets
     surface.quadrics[first] += surface.quadrics[second]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -67,7 +68,7 @@ def read_obj(path: Path) -> Mesh:
                         for item in indices
                         if len(item) > 1 and item[1]
                     ]
-                    for second, third in zip(points[1:], points[2:]):
+                    for second, third in itertools.pairwise(points[1:]):
                         faces.append([points[0], second, third])
                         parts.append(material)
                         texture.append(
@@ -76,9 +77,7 @@ def read_obj(path: Path) -> Mesh:
     if not faces:
         raise ValueError(f"{path} holds no faces")
     distinct, index = np.unique(np.array(vertices), axis=0, return_inverse=True)
-    return Mesh(
-        distinct, index.ravel()[np.array(faces)], np.array(parts), np.array(texture), image
-    )
+    return Mesh(distinct, index.ravel()[np.array(faces)], np.array(parts), np.array(texture), image)
 
 
 def write_obj(mesh: Mesh, path: Path) -> None:
@@ -90,7 +89,7 @@ def write_obj(mesh: Mesh, path: Path) -> None:
         lines = [f"mtllib {path.with_suffix('.mtl').name}", "usemtl link"]
     lines += ["v {:.6f} {:.6f} {:.6f}".format(*vertex) for vertex in mesh.vertices]
     lines += ["vn {:.4f} {:.4f} {:.4f}".format(*normal) for normal in normals.reshape(-1, 3)]
-    textured = np.isfinite(mesh.texture).all(axis=1)
+    textured: NDArray[np.bool_] = np.isfinite(mesh.texture[:, 0])
     lines += ["vt {:.6f} {:.6f}".format(*place) for place in mesh.texture[textured]]
     place_numbers = np.cumsum(textured)
     for number, face in enumerate(mesh.faces):

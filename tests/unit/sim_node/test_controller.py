@@ -6,9 +6,13 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from sim_node.arm_controller import ArmController
+from sim_node.arm_models import PANDA
+from sim_node.controller import ArmController
 from sim_node.trajectory import TrajectoryError
-from sim_node.world import HOME, JOINTS, World
+from sim_node.world import World
+
+HOME = PANDA.home_positions
+JOINTS = PANDA.joints
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +35,7 @@ def reach(world: World, arm: ArmController, seconds: float) -> float:
 def test_it_follows_a_smooth_trajectory_closely_and_stays_at_its_end(world: World) -> None:
     world.reset((("red_box",), (), ()))
     arm = ArmController(world)
-    goal = np.array(HOME) + [0.5, 0.3, -0.3, -0.2, 0.2, 0.3, 0.4, -0.02, -0.02]
+    goal = HOME + [0.5, 0.3, -0.3, -0.2, 0.2, 0.3, 0.4, -0.02, -0.02]
     arm.follow(JOINTS, np.array([0.0, 1.5]), np.array([HOME, goal]), np.zeros((2, 9)))
     assert arm.moving
     assert reach(world, arm, 2.0) < 0.02
@@ -42,7 +46,7 @@ def test_it_follows_a_smooth_trajectory_closely_and_stays_at_its_end(world: Worl
 def test_a_refused_trajectory_moves_nothing(world: World) -> None:
     world.reset((("red_box",), (), ()))
     arm = ArmController(world)
-    far = np.array([np.array(HOME) + [0.5, *[0.0] * 8], np.array(HOME)])
+    far = np.array([HOME + [0.5, *[0.0] * 8], HOME])
     with pytest.raises(TrajectoryError, match="would jump"):
         arm.follow(JOINTS, np.array([0.0, 1.0]), far, None)
     reach(world, arm, 0.5)
@@ -52,7 +56,7 @@ def test_a_refused_trajectory_moves_nothing(world: World) -> None:
 def test_stop_holds_the_arm_where_it_is(world: World) -> None:
     world.reset((("red_box",), (), ()))
     arm = ArmController(world)
-    goal = np.array(HOME) + [0.8, 0, 0, 0, 0, 0, 0, 0, 0]
+    goal = HOME + [0.8, 0, 0, 0, 0, 0, 0, 0, 0]
     arm.follow(JOINTS, np.array([0.0, 2.0]), np.array([HOME, goal]), np.zeros((2, 9)))
     reach(world, arm, 1.0)
     arm.stop()

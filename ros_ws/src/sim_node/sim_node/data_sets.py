@@ -12,6 +12,7 @@ import json
 from collections.abc import Iterable
 from itertools import islice
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 from tqdm import tqdm
@@ -21,7 +22,7 @@ from scene_graph import BOX, COLORS, Stacks, object_name
 from .layouts import all_layouts, random_layout
 from .world import World
 
-SHARD_SIZE = 120
+SHARD_SIZE: Final = 120
 
 
 def render_shard(world: World, states: Iterable[tuple[int, Stacks]], path: Path) -> None:

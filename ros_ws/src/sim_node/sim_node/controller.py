@@ -9,11 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .trajectory import JointLimits, Trajectory
-from .world import FINGER_JOINTS, HOME, JOINTS, World
-
-#: How far a trajectory's first point may be from the present state [rad; m for the fingers].
-#: Fingers that hold a block are away from their target by the squeeze.
-_START_TOLERANCE = np.array([0.1] * 7 + [0.05] * 2)
+from .world import World
 
 
 class ArmController:
@@ -21,10 +17,10 @@ class ArmController:
 
     def __init__(self, world: World) -> None:
         self._world = world
-        self.limits = JointLimits(JOINTS, world.lower, world.upper, world.max_velocity)
+        self.limits = JointLimits(world.arm.joints, world.lower, world.upper, world.max_velocity)
         self._trajectory: Trajectory | None = None
         self._started = 0.0
-        self._hold = np.array(HOME)
+        self._hold = self._world.arm.home_positions
 
     @property
     def moving(self) -> bool:
@@ -45,7 +41,7 @@ class ArmController:
         """
         start, _, _ = self._world.joint_state()
         trajectory = Trajectory(
-            names, times, positions, velocities, self.limits, start, _START_TOLERANCE
+            names, times, positions, velocities, self.limits, start, self._world.arm.start_tolerance
         )
         self._trajectory, self._started = trajectory, self._world.time
         return trajectory
@@ -53,13 +49,14 @@ class ArmController:
     def stop(self) -> None:
         """Holds the present position of the arm; the fingers keep their target."""
         positions, _, _ = self._world.joint_state()
-        fingers = [JOINTS.index(name) for name in FINGER_JOINTS]
-        positions[fingers] = self._target()[0][fingers]
+        arm = self._world.arm
+        is_finger = np.isin(arm.joints, arm.finger_joints)
+        positions = np.where(is_finger, self._target()[0], positions)
         self._trajectory, self._hold = None, positions
 
     def reset(self) -> None:
         """Forgets the trajectory and holds home, where the world's reset has put the arm."""
-        self._trajectory, self._hold = None, np.array(HOME)
+        self._trajectory, self._hold = None, self._world.arm.home_positions
 
     def update(self) -> None:
         """Commands the motors for the next physics step."""

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The arms that can be simulated: what a URDF does not say of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import pybullet_data
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class ArmModel:
+    """An arm with a parallel gripper.
+
+    Values of all joints at once are in the order of :attr:`joints`.
+
+    Attributes:
+        name: what the parameter ``robot`` calls it.
+        urdf: its description; meshes in it are relative to its folder.
+        arm_joints: names of the arm's joints from the base.
+        finger_joints: names of the fingers' two joints, which move by the same distance.
+        home: position of the arm after a reset: hand up and back, no block hidden [rad].
+        fingers_open: position of each finger after a reset [m].
+        arm_gain, finger_gain: share of a position's error that the motors remove in a time step.
+        arm_start_tolerance, finger_start_tolerance: how far a trajectory's first point may be
+            from the present state [rad, m]; fingers that hold a block are away from their target
+            by the squeeze.
+    """
+
+    name: str
+    urdf: Path
+    arm_joints: tuple[str, ...]
+    finger_joints: tuple[str, str]
+    home: tuple[float, ...]
+    fingers_open: float
+    arm_gain: float
+    finger_gain: float
+    arm_start_tolerance: float
+    finger_start_tolerance: float
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of all joints that move: the arm's, then the fingers'; n of them."""
+        return self.arm_joints + self.finger_joints
+
+    @property
+    def home_positions(self) -> NDArray[np.float64]:
+        """Positions of all joints after a reset, shape (n,) [rad, m]."""
+        return np.concatenate([self.home, self._of_fingers(self.fingers_open)])
+
+    @property
+    def gains(self) -> NDArray[np.float64]:
+        """Position gains of all joints, shape (n,)."""
+        return self._of_all(self.arm_gain, self.finger_gain)
+
+    @property
+    def start_tolerance(self) -> NDArray[np.float64]:
+        """Start tolerances of all joints, shape (n,) [rad, m]."""
+        return self._of_all(self.arm_start_tolerance, self.finger_start_tolerance)
+
+    def _of_all(self, arm: float, finger: float) -> NDArray[np.float64]:
+        return np.concatenate([np.full(len(self.arm_joints), arm), self._of_fingers(finger)])
+
+    def _of_fingers(self, value: float) -> NDArray[np.float64]:
+        return np.full(len(self.finger_joints), value)
+
+
+#: Franka Emika Panda with its hand, as pybullet ships it.
+PANDA: Final = ArmModel(
+    name="panda",
+    urdf=Path(pybullet_data.getDataPath()) / "franka_panda" / "panda.urdf",
+    arm_joints=tuple(f"panda_joint{number}" for number in range(1, 8)),
+    finger_joints=("panda_finger_joint1", "panda_finger_joint2"),
+    home=(0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785),
+    fingers_open=0.04,
+    arm_gain=0.4,
+    finger_gain=0.2,
+    arm_start_tolerance=0.1,
+    finger_start_tolerance=0.05,
+)
+
+#: By the name that the parameter ``robot`` takes; an arm is added here.
+ARM_MODELS: Final[Mapping[str, ArmModel]] = {model.name: model for model in (PANDA,)}

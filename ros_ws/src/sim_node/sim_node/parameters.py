@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The node's parameters, and the first scene that they ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from tamp_runtime.parameters import ParameterSpec
+
+from scene_graph import Stacks
+
+from .arm_models import ARM_MODELS, PANDA
+from .layouts import parse_layout, random_layout
+
+
+def _robot_problem(name: str) -> str:
+    """the name of an arm in sim_node.arm_models"""
+    known = ", ".join(sorted(ARM_MODELS))
+    return "" if name in ARM_MODELS else f"robot = {name!r} is not a known arm; known: {known}"
+
+
+PARAMETERS: Final = (
+    ParameterSpec(
+        "real_time_factor",
+        1.0,
+        "simulated seconds per second; 0: as fast as it goes",
+        minimum=0.0,
+        maximum=1000.0,
+    ),
+    ParameterSpec(
+        "robot", PANDA.name, "which arm stands there", read_only=True, check=_robot_problem
+    ),
+    ParameterSpec(
+        "seed", 0, "seed of the first scene", minimum=0, maximum=2**31 - 1, read_only=True
+    ),
+    ParameterSpec("blocks", 5, "blocks in the first scene", minimum=3, maximum=7, read_only=True),
+    ParameterSpec(
+        "layout",
+        [""],
+        "first scene, one string a stack from the left, names from the bottom, comma separated; "
+        "all empty: random by seed",
+        read_only=True,
+    ),
+)
+
+
+def first_layout(values: Mapping[str, Any], stack_count: int) -> Stacks:
+    """The layout that the parameters ask for; raises LayoutError if it is impossible."""
+    if any(values["layout"]):
+        return parse_layout(values["layout"], stack_count)
+    return random_layout(values["seed"], values["blocks"], stack_count)
