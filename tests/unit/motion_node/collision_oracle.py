@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 
 from motion_node.optimiser import Motion
 from motion_node.phases import PICK, PLACE
+from motion_node.robots import PANDA
+from motion_node.robots.joints import JointValues
 from scene_graph import Move, SceneGraph, apply_move
 
 Array = NDArray[np.float64]
@@ -87,6 +89,10 @@ class CollisionOracle:
                 0.0, shape, -1, position, quaternion, physicsClientId=self.client
             )
         )
+
+    def take_up(self, joints: JointValues) -> None:
+        """Puts the arm and its fingers where the joints say; see :meth:`set_joints`."""
+        self.set_joints(PANDA.joint_names, np.concatenate([joints.arm, joints.fingers]))
 
     def set_joints(self, names: Sequence[str], positions: Array) -> None:
         """Puts the robot, and the held block with it, where the joints say."""
@@ -179,7 +185,7 @@ def switches(
     for interval in trajectory.intervals:
         phase = interval.phase
         if interval.gripping and interval.end <= until:
-            oracle.set_joints(trajectory.joint_names, trajectory.sample(interval.end)[0])
+            oracle.take_up(trajectory.sample(interval.end)[0])
             if phase.kind == PICK:
                 oracle.grasp(phase.object_name)
             elif phase.kind == PLACE:
@@ -209,7 +215,7 @@ def replay(
         for interval in trajectory.intervals:
             phase = interval.phase
             if interval.gripping:
-                oracle.set_joints(trajectory.joint_names, trajectory.sample(interval.end)[0])
+                oracle.take_up(trajectory.sample(interval.end)[0])
                 if phase.kind == PICK:
                     oracle.grasp(phase.object_name)
                 elif phase.kind == PLACE:
@@ -218,8 +224,8 @@ def replay(
             for time in np.arange(interval.start, interval.end, step):
                 joints = trajectory.sample(time)[0]
                 if oracle.held:
-                    joints[-2:] = half
-                oracle.set_joints(trajectory.joint_names, joints)
+                    joints = JointValues(joints.arm, np.full(2, half))
+                oracle.take_up(joints)
                 robot, carried = oracle.nearest(float(time))
                 hand = np.array(oracle.hand_pose()[0])
                 near_switch = any(

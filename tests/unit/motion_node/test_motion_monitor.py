@@ -8,33 +8,39 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from motion_scenes import EDGE, scene
-from numpy.typing import NDArray
 
-from motion_node.arm_state import ArmState
-from motion_node.monitor import Monitor, MonitorSettings, Verdict
+from motion_node.execution.arm_state import ArmState
+from motion_node.execution.monitor import Monitor, MonitorSettings, Verdict
 from motion_node.optimiser import MotionOptimiser
 from motion_node.robots import PANDA
-from motion_node.trajectory import Trajectory
+from motion_node.robots.joints import JointValues
+from motion_node.timing.trajectory import Trajectory
 from scene_graph import Move
 
-Array = NDArray[np.float64]
-HOME = np.array([*PANDA.home, 0.04, 0.04])
+HOME = JointValues(np.array(PANDA.home), np.array([0.04, 0.04]))
 
 
 @pytest.fixture(scope="module")
 def trajectory(optimiser: MotionOptimiser) -> Trajectory:
     graph = scene((2, 1, 0), np.random.default_rng(1))
-    return optimiser.solve(graph, [Move(0, 2), Move(1, 2)], HOME[:7], HOME[7:]).trajectory
+    return optimiser.solve(graph, [Move(0, 2), Move(1, 2)], HOME.arm, HOME.fingers).trajectory
 
 
-def squeezed(positions: Array) -> Array:
+def squeezed(positions: JointValues, half: float = EDGE / 2) -> JointValues:
     """Fingers cannot close farther than the block between them."""
-    return np.concatenate([positions[:7], np.maximum(positions[7:], EDGE / 2)])
+    return JointValues(positions.arm, np.maximum(positions.fingers, half))
+
+
+def pushed(positions: JointValues, joint: int, by: float) -> JointValues:
+    """One joint of the arm is elsewhere [rad]."""
+    arm = positions.arm.copy()
+    arm[joint] += by
+    return JointValues(arm, positions.fingers)
 
 
 def watch(
     trajectory: Trajectory,
-    arm: Callable[[float], Array],
+    arm: Callable[[float], JointValues],
     *,
     settings: MonitorSettings | None = None,
     speed: float = 1.0,
@@ -98,10 +104,8 @@ def test_an_arm_that_gets_stuck_is_noticed(trajectory: Trajectory) -> None:
 
 
 def test_an_arm_that_is_pushed_aside_is_noticed(trajectory: Trajectory) -> None:
-    def arm(t: float) -> Array:
-        push = np.zeros(9)
-        push[3] = 0.4 if t > 4.0 else 0.0
-        return squeezed(trajectory.sample(t)[0]) + push
+    def arm(t: float) -> JointValues:
+        return pushed(squeezed(trajectory.sample(t)[0]), 3, 0.4 if t > 4.0 else 0.0)
 
     verdict, time, _, _ = watch(trajectory, arm)
     assert verdict is Verdict.OFF_THE_PATH
@@ -109,10 +113,8 @@ def test_an_arm_that_is_pushed_aside_is_noticed(trajectory: Trajectory) -> None:
 
 
 def test_a_short_disturbance_is_tolerated(trajectory: Trajectory) -> None:
-    def arm(t: float) -> Array:
-        push = np.zeros(9)
-        push[3] = 0.4 if 4.0 < t < 4.2 else 0.0
-        return squeezed(trajectory.sample(t)[0]) + push
+    def arm(t: float) -> JointValues:
+        return pushed(squeezed(trajectory.sample(t)[0]), 3, 0.4 if 4.0 < t < 4.2 else 0.0)
 
     assert watch(trajectory, arm)[0] is Verdict.ARRIVED
 
@@ -129,7 +131,7 @@ def test_a_block_that_slips_on_the_way_is_noticed(trajectory: Trajectory) -> Non
     travel = trajectory.intervals[2]
     slip = (travel.start + travel.end) / 2
 
-    def arm(t: float) -> Array:
+    def arm(t: float) -> JointValues:
         joints = trajectory.sample(t)[0]
         return squeezed(joints) if t < slip else joints
 
@@ -142,19 +144,16 @@ def test_a_block_that_slips_on_the_way_is_noticed(trajectory: Trajectory) -> Non
 def test_a_wrong_guess_of_the_blocks_size_is_no_lost_grasp(
     trajectory: Trajectory, error: float
 ) -> None:
-    def arm(t: float) -> Array:
-        joints = trajectory.sample(t)[0]
-        return np.concatenate([joints[:7], np.maximum(joints[7:], EDGE / 2 + error)])
+    def arm(t: float) -> JointValues:
+        return squeezed(trajectory.sample(t)[0], EDGE / 2 + error)
 
     assert watch(trajectory, arm)[0] is Verdict.ARRIVED
 
 
 def test_an_arm_that_stops_short_of_the_end_is_noticed(trajectory: Trajectory) -> None:
-    def arm(t: float) -> Array:
-        joints = squeezed(trajectory.sample(t)[0])
-        if t > trajectory.duration - 0.1:
-            joints[1] += 0.05
-        return joints
+    def arm(t: float) -> JointValues:
+        short = 0.05 if t > trajectory.duration - 0.1 else 0.0
+        return pushed(squeezed(trajectory.sample(t)[0]), 1, short)
 
     assert watch(trajectory, arm)[0] is Verdict.NOT_ARRIVED
 

@@ -44,6 +44,12 @@ def judge(
     return motion
 
 
+def assert_at_home(motion: Motion) -> None:
+    end = motion.trajectory.positions[-1]
+    np.testing.assert_allclose(end.arm, HOME_Q)
+    np.testing.assert_allclose(end.fingers, OPEN)
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_random_plans_touch_nothing(optimiser: MotionOptimiser, seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -87,7 +93,7 @@ def test_an_arm_that_starts_over_a_stack_rises_first(
     motion = judge(optimiser, graph, [Move(1, 2)], start)
     points = [
         keyframes.features.hand_pose(q)[0]
-        for q in motion.trajectory.sample(np.linspace(0, 0.3, 10))[0][:, :7]
+        for q in motion.trajectory.sample(np.linspace(0, 0.3, 10))[0].arm
     ]
     assert all(np.hypot(*(point[:2] - above[:2])) < 0.01 or point[2] > above[2] for point in points)
 
@@ -98,20 +104,21 @@ def test_limits_hold_everywhere(optimiser: MotionOptimiser) -> None:
     trajectory = optimiser.solve(graph, random_moves(graph, 4, rng), HOME_Q, OPEN).trajectory
     times = np.arange(0.0, trajectory.duration, 0.001)
     positions, velocities = trajectory.sample(times)
-    arm, speed = positions[:, :7], np.abs(velocities[:, :7])
+    arm, speed = positions.arm, np.abs(velocities.arm)
     assert (arm >= optimiser.kinematics.lower).all()
     assert (arm <= optimiser.kinematics.upper).all()
     timing = optimiser.timing
     assert (speed <= timing.velocity_scale * optimiser.limits.velocity * 1.001).all()
-    acceleration = np.abs(np.diff(velocities[:, :7], axis=0)) / 0.001
+    acceleration = np.abs(np.diff(velocities.arm, axis=0)) / 0.001
     allowed = timing.acceleration_scale * optimiser.limits.acceleration
     assert (acceleration <= allowed * 1.01).all()
-    fingers = positions[:, 7:]
+    fingers = positions.fingers
     assert fingers.min() >= 0.0
     assert fingers.max() <= 0.04 + 1e-9
-    assert np.abs(velocities[:, 7:]).max() <= 0.2
+    assert np.abs(velocities.fingers).max() <= 0.2
     # Positions agree with velocities, so there are no jumps.
-    np.testing.assert_allclose(np.diff(positions, axis=0) / 0.001, velocities[:-1], atol=0.03)
+    for values, rates in ((arm, velocities.arm), (fingers, velocities.fingers)):
+        np.testing.assert_allclose(np.diff(values, axis=0) / 0.001, rates[:-1], atol=0.03)
 
 
 def test_at_switches_the_hand_stands_still_straight_down_at_the_grasp(
@@ -126,13 +133,14 @@ def test_at_switches_the_hand_stands_still_straight_down_at_the_grasp(
     for interval in gripping:
         for time in np.linspace(interval.start, interval.end, 5):
             positions, velocities = motion.trajectory.sample(time)
-            assert np.abs(velocities[:7]).max() < 1e-6
-            point, yaw = features.hand_pose(positions[:7])
+            assert np.abs(velocities.arm).max() < 1e-6
+            point, yaw = features.hand_pose(positions.arm)
             switch = interval.phase.switch
             assert switch is not None
             assert point == pytest.approx(switch.position_world, abs=2e-4)
             assert abs(np.sin(yaw - switch.yaw)) < 2e-4
-        ends = motion.trajectory.sample(np.array([interval.start, interval.end]))[0][:, 7]
+        both = motion.trajectory.sample(np.array([interval.start, interval.end]))[0]
+        ends = both.fingers[:, 0]
         assert ends[1] == pytest.approx(interval.phase.grip)
         assert (ends[1] < ends[0]) == (interval.phase.kind == PICK)
 
@@ -147,7 +155,7 @@ def test_the_hand_comes_from_above_and_leaves_upwards(optimiser: MotionOptimiser
             continue
         times = np.linspace(interval.start, interval.end, 60)
         points = np.array(
-            [features.hand_pose(q)[0] for q in motion.trajectory.sample(times)[0][:, :7]]
+            [features.hand_pose(q)[0] for q in motion.trajectory.sample(times)[0].arm]
         )
         for switch in (interval.phase.start, interval.phase.switch):
             if switch is None:
@@ -162,8 +170,9 @@ def test_the_hand_comes_from_above_and_leaves_upwards(optimiser: MotionOptimiser
 def test_the_motion_ends_at_home_with_open_fingers(optimiser: MotionOptimiser) -> None:
     motion = optimiser.solve(scene((2, 0, 1)), [Move(0, 1)], HOME_Q, OPEN)
     assert motion.trajectory.intervals[-1].phase.kind == HOME
-    np.testing.assert_allclose(motion.trajectory.positions[-1], [*PANDA.home, 0.04, 0.04])
-    assert not motion.trajectory.velocities[-1].any()
+    assert_at_home(motion)
+    assert not motion.trajectory.velocities.arm[-1].any()
+    assert not motion.trajectory.velocities.fingers[-1].any()
 
 
 def test_fingers_that_are_closed_open_before_the_arm_moves(optimiser: MotionOptimiser) -> None:
@@ -171,8 +180,8 @@ def test_fingers_that_are_closed_open_before_the_arm_moves(optimiser: MotionOpti
     first = motion.trajectory.intervals[0]
     assert first.gripping
     positions = motion.trajectory.sample(np.array([0.0, first.end]))[0]
-    np.testing.assert_allclose(positions[0], [*PANDA.home, 0.0, 0.0])
-    np.testing.assert_allclose(positions[1], [*PANDA.home, 0.04, 0.04])
+    np.testing.assert_allclose(positions.arm, [HOME_Q, HOME_Q])
+    np.testing.assert_allclose(positions.fingers, [np.zeros(2), OPEN])
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -188,16 +197,16 @@ def test_an_empty_hand_that_is_stopped_anywhere_goes_home_and_touches_nothing(
         time = rng.uniform(interval.start, interval.end)
         brake = motion.trajectory.brake(time, 0.4)
         rest = brake.positions[-1]
-        home = optimiser.solve_way_home(motion, interval.phase.move, rest[:7], rest[7:])
+        home = optimiser.solve_way_home(motion, interval.phase.move, rest.arm, rest.fingers)
         oracle = CollisionOracle(graph)
         switches(oracle, moves, motion, optimiser.settings.phases.place_gap, until=time)
         for trajectory in (brake, home.trajectory):
             for at in np.arange(0.0, trajectory.duration, 0.04):
-                oracle.set_joints(trajectory.joint_names, trajectory.sample(at)[0])
+                oracle.take_up(trajectory.sample(at)[0])
                 nearest, _ = oracle.nearest(float(at))
                 assert nearest.distance > FREE, (time, nearest)
         oracle.close()
-        np.testing.assert_allclose(home.trajectory.positions[-1], [*PANDA.home, 0.04, 0.04])
+        assert_at_home(home)
 
 
 def test_the_way_home_from_a_grasp_touches_nothing(optimiser: MotionOptimiser) -> None:
@@ -205,8 +214,8 @@ def test_the_way_home_from_a_grasp_touches_nothing(optimiser: MotionOptimiser) -
     moves = [Move(1, 0)]
     motion = optimiser.solve(graph, moves, HOME_Q, OPEN)
     pick = motion.trajectory.intervals[0]
-    arm = motion.trajectory.sample(pick.end)[0][:7]
+    arm = motion.trajectory.sample(pick.end)[0].arm
     home = optimiser.solve_way_home(motion, 0, arm, np.array([0.03, 0.03]))
     result = replay(graph, [], home, 0.0, vertical=0.03)
     assert result.free.distance > FREE, result.free
-    np.testing.assert_allclose(home.trajectory.positions[-1, :7], PANDA.home)
+    np.testing.assert_allclose(home.trajectory.positions.arm[-1], PANDA.home)

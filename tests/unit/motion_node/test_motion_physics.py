@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from motion_scenes import random_moves
 
-from motion_node.arm_state import ArmState
-from motion_node.monitor import Monitor, MonitorSettings, Verdict
+from motion_node.execution.arm_state import ArmState
+from motion_node.execution.monitor import Monitor, MonitorSettings, Verdict
 from motion_node.optimiser import MotionOptimiser
+from motion_node.robots import PANDA
+from motion_node.robots.joints import JointValues
 from scene_graph import Move, SceneGraph, Stacks, apply_move
 from sim_node.controller import ArmController
 from sim_node.ground_truth import true_scene_graph
@@ -32,22 +34,28 @@ def as_perceived(graph: SceneGraph, rng: np.random.Generator, error: float) -> S
     return replace(graph, objects=objects)
 
 
+def joints(world: World) -> JointValues:
+    return JointValues(*np.split(world.joint_state()[0], [len(PANDA.arm_joints)]))
+
+
 def carry_out(
     world: World, optimiser: MotionOptimiser, graph: SceneGraph, moves: list[Move]
 ) -> Verdict:
     """Follows the trajectory as the simulator does, watched by the monitor."""
     controller = ArmController(world)
-    start = world.joint_state()[0]
-    trajectory = optimiser.solve(graph, moves, start[:7], start[7:]).trajectory
-    controller.follow(
-        trajectory.joint_names, trajectory.times, trajectory.positions, trajectory.velocities
+    start = joints(world)
+    trajectory = optimiser.solve(graph, moves, start.arm, start.fingers).trajectory
+    positions, velocities = (
+        np.hstack([values.arm, values.fingers])
+        for values in (trajectory.positions, trajectory.velocities)
     )
+    controller.follow(PANDA.joint_names, trajectory.times, positions, velocities)
     monitor = Monitor(trajectory, ArmState(world.time, 0.0, start, 1.0), MonitorSettings())
     while True:
         for _ in range(4):
             controller.update()
             world.step()
-        state = ArmState(world.time, world.time, world.joint_state()[0], 0.0)
+        state = ArmState(world.time, world.time, joints(world), 0.0)
         verdict = monitor.update(state)
         if verdict is not Verdict.GOING:
             return verdict

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from sensor_msgs.msg import JointState
 from tamp_interfaces.msg import SymbolicPlan
 from tamp_runtime.messages.scene_graph import graph_from_message, moves_from_messages
@@ -12,10 +11,10 @@ from tamp_runtime.messages.stamps import duration_from_seconds
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from .errors import InvalidPlanError
-from .executive import Plan
-from .trajectory import Trajectory
-
-Array = NDArray[np.float64]
+from .execution.executive import Plan
+from .robots import Arm
+from .robots.joints import JointValues
+from .timing.trajectory import Trajectory
 
 
 def plan_from_message(message: SymbolicPlan) -> Plan:
@@ -32,28 +31,32 @@ def plan_from_message(message: SymbolicPlan) -> Plan:
     )
 
 
-def trajectory_to_message(trajectory: Trajectory) -> JointTrajectory:
-    """The stamp stays zero, which asks the controller to start at once."""
-    message = JointTrajectory(joint_names=list(trajectory.joint_names))
-    points = []
-    for time, positions, velocities in zip(
-        trajectory.times.tolist(), trajectory.positions.tolist(), trajectory.velocities.tolist()
-    ):
-        points.append(
-            JointTrajectoryPoint(
-                positions=positions,
-                velocities=velocities,
-                time_from_start=duration_from_seconds(time),
-            )
+def trajectory_to_message(trajectory: Trajectory, arm: Arm) -> JointTrajectory:
+    """Names all joints; the stamp stays zero, which asks the controller to start at once."""
+    message = JointTrajectory(joint_names=list(arm.joint_names))
+    positions, velocities = (
+        np.hstack([values.arm, values.fingers]).tolist()
+        for values in (trajectory.positions, trajectory.velocities)
+    )
+    message.points = [
+        JointTrajectoryPoint(
+            positions=position,
+            velocities=velocity,
+            time_from_start=duration_from_seconds(time),
         )
-    message.points = points
+        for time, position, velocity in zip(trajectory.times.tolist(), positions, velocities)
+    ]
     return message
 
 
-def joint_positions(message: JointState, names: tuple[str, ...]) -> Array | None:
-    """Positions of the named joints, shape (n,) [rad, m]; None if one is missing or not finite."""
-    index = {name: position for position, name in enumerate(message.name)}
-    if len(message.position) != len(message.name) or any(name not in index for name in names):
+def joint_positions(message: JointState, arm: Arm) -> JointValues | None:
+    """Positions of all joints of an arm [rad, m]; None if one is missing or not finite."""
+    if len(message.position) != len(message.name):
         return None
-    positions = np.array([message.position[index[name]] for name in names])
-    return positions if np.isfinite(positions).all() else None
+    found = dict(zip(message.name, message.position))
+    if any(name not in found for name in arm.joint_names):
+        return None
+    positions = np.array([found[name] for name in arm.joint_names])
+    if not np.isfinite(positions).all():
+        return None
+    return JointValues(*np.split(positions, [len(arm.arm_joints)]))

@@ -25,18 +25,18 @@ from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.qos import LATCHED, RELIABLE, SENSOR_DATA
 from trajectory_msgs.msg import JointTrajectory
 
-from .arm_state import ArmStateBox
 from .conversions import (
     joint_positions,
     plan_from_message,
     trajectory_to_message,
 )
 from .errors import InvalidPlanError, MotionError
-from .executive import Executive, Plan
+from .execution.arm_state import ArmStateBox
+from .execution.executive import Executive, Plan
 from .optimiser import MotionOptimiser
 from .parameters import PARAMETERS, execution_settings, optimiser_settings, timing_settings
 from .robots import PANDA
-from .trajectory import Trajectory
+from .timing.trajectory import Trajectory
 
 #: Numbers of stacks and of moves for which the problems are built before they are asked for.
 PREPARED_STACKS = 3
@@ -65,7 +65,6 @@ class MotionNode(Node):
         super().__init__("motion_node", **kwargs)
         self._values = declare_parameters(self, PARAMETERS, self._parameters_changed)
         self._robot = replace(PANDA, acceleration=tuple(self._values["acceleration_limits"]))
-        self._names = self._robot.joint_names
         self._arm = ArmStateBox()
         self._optimiser: MotionOptimiser | None = None
         self._description = ""
@@ -82,7 +81,6 @@ class MotionNode(Node):
             lambda: self._optimiser,
             self._arm,
             self._send,
-            self._report,
             lambda: execution_settings(self._values),
         )
         streams, plans = MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()
@@ -120,11 +118,12 @@ class MotionNode(Node):
             self._optimiser.timing = timing_settings(self._values)
 
     def _on_joint_state(self, message: JointState) -> None:
-        positions = joint_positions(message, self._names)
+        positions = joint_positions(message, self._robot)
         if positions is None:
             if not self._warned_about_joints:
+                names = ", ".join(self._robot.joint_names)
                 self.get_logger().warning(
-                    f"joint_states without finite positions of all of {', '.join(self._names)}"
+                    f"joint_states lack finite positions of some of {names}"
                 )
             self._warned_about_joints = True
             return
@@ -225,7 +224,7 @@ class MotionNode(Node):
         while (item := self._plans.get()) is not None:
             plan, stop = item
             try:
-                self._executive.carry_out(plan, stop)
+                self._executive.carry_out(plan, stop, self._report)
             except Exception:
                 if self.context.ok():
                     self.get_logger().error(
@@ -241,7 +240,7 @@ class MotionNode(Node):
 
     def _send(self, trajectory: Trajectory) -> None:
         if self.context.ok():
-            self._trajectories.publish(trajectory_to_message(trajectory))
+            self._trajectories.publish(trajectory_to_message(trajectory, self._robot))
 
     def _publish(self, report: MotionReport) -> None:
         if not self.context.ok():

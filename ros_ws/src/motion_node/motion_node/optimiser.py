@@ -21,8 +21,9 @@ from .path_problem import PathProblem, PhasePath
 from .phase_bounds import PathSettings
 from .phases import HOME, Phase, PhaseSettings, expand, read_scene, too_wide, way_home
 from .robots import PANDA, Arm
-from .timing import JointLimits, TimingSettings, time_paths
-from .trajectory import Trajectory
+from .timing.limits import JointLimits
+from .timing.time_paths import TimingSettings, time_paths
+from .timing.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
@@ -191,8 +192,7 @@ class MotionOptimiser:
             check()
             paths += problem.solve([phase], [start, goal], clear)
         check()
-        names = self.robot.joint_names
         trajectory = time_paths(
-            paths, names, self.limits, self.timing, fingers, self.robot.gripper.finger_travel
+            paths, self.limits, self.timing, fingers, self.robot.gripper.finger_travel
         )
         return Motion(tuple(phases), tuple(paths), trajectory, floor, time.perf_counter() - begin)

@@ -8,12 +8,12 @@ from typing import Any
 
 from tamp_runtime.parameters import ParameterSpec
 
-from .following import ExecutionSettings
-from .monitor import MonitorSettings
+from .execution.follow import ExecutionSettings
+from .execution.monitor import MonitorSettings
 from .optimiser import Settings
 from .phase_bounds import PathSettings
 from .phases import PhaseSettings
-from .timing import TimingSettings
+from .timing.time_paths import TimingSettings
 
 _SETTINGS, _EXECUTION, _MONITOR = Settings(), ExecutionSettings(), MonitorSettings()
 _PHASES, _PATH, _TIMING = _SETTINGS.phases, _SETTINGS.path, _SETTINGS.timing

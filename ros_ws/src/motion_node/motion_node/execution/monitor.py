@@ -15,8 +15,9 @@ from enum import Enum, auto
 import numpy as np
 from numpy.typing import NDArray
 
+from ..robots.joints import JointValues
+from ..timing.trajectory import Trajectory
 from .arm_state import ArmState
-from .trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
@@ -59,6 +60,22 @@ class MonitorSettings:
     grasp_seconds: float = 0.1
 
 
+class _Lasting:
+    """Whether a condition has been true for some time [s]."""
+
+    def __init__(self, seconds: float) -> None:
+        self._seconds = seconds
+        self._since: float | None = None
+
+    def lasts(self, condition: bool, stamp: float) -> bool:
+        if not condition:
+            self._since = None
+            return False
+        if self._since is None:
+            self._since = stamp
+        return stamp - self._since >= self._seconds
+
+
 class Monitor:
     """Follows one trajectory.
 
@@ -78,14 +95,15 @@ class Monitor:
         self.trajectory, self.settings = trajectory, settings
         self.time = 0.0
         self.lag = 0.0
-        self._arm = len(trajectory.joint_names) - 2
         self._sent = self._last = state
         self._anchor = state.stamp
-        span = np.abs(trajectory.positions - trajectory.positions[0]).max(axis=0)
-        moves_arm = span[: self._arm].max() > 2 * self.STARTED
-        self._started = not moves_arm and span[self._arm :].max() < 2 * self.STARTED_FINGER
-        self._off_since: float | None = None
-        self._empty_since: float | None = None
+        arm, fingers = trajectory.positions.furthest(trajectory.positions[0])
+        # One that goes nowhere cannot be seen to start.
+        self._started = bool(
+            arm.max() <= 2 * self.STARTED and fingers.max() < 2 * self.STARTED_FINGER
+        )
+        self._off = _Lasting(settings.tracking_seconds)
+        self._empty = _Lasting(settings.grasp_seconds)
 
     @property
     def started(self) -> bool:
@@ -106,23 +124,16 @@ class Monitor:
         error = self._locate(state, max(0.0, state.stamp - previous.stamp))
         elapsed = state.stamp - self._anchor
         self.lag = max(0.0, min(elapsed, self.trajectory.duration) - self.time)
-        if self._lasts(
-            "_off_since",
-            error > self.settings.tracking_tolerance,
-            state.stamp,
-            self.settings.tracking_seconds,
-        ):
+        if self._off.lasts(error > self.settings.tracking_tolerance, state.stamp):
             return Verdict.OFF_THE_PATH
-        if self._lasts(
-            "_empty_since", self._is_empty(state), state.stamp, self.settings.grasp_seconds
-        ):
+        if self._empty.lasts(self._is_empty(state), state.stamp):
             return Verdict.GRASP_LOST
         if self.lag > self.settings.max_lag:
             return Verdict.BEHIND
         over = elapsed - self.trajectory.duration
         if over >= 0.0:
-            end = self.trajectory.positions[-1, : self._arm]
-            if np.abs(state.positions[: self._arm] - end).max() <= self.settings.goal_tolerance:
+            off, _ = state.positions.furthest(self.trajectory.positions[-1])
+            if off <= self.settings.goal_tolerance:
                 self.time = self.trajectory.duration
                 return Verdict.ARRIVED
             if over > self.settings.settle_seconds:
@@ -131,24 +142,22 @@ class Monitor:
 
     def _starts(self, state: ArmState) -> bool:
         """Whether the arm or the fingers have left where they were."""
-        moved = np.abs(state.positions - self._sent.positions)
-        self._started = bool(
-            moved[: self._arm].max() > self.STARTED
-            or moved[self._arm :].max() > self.STARTED_FINGER
-        )
+        self._started = bool(self._left(state.positions, self._sent.positions))
         if self._started:
             # The trajectory needed some time to come this far, and so did these news; look for it
             # from its beginning to where it can be at most.
-            away = np.abs(self.trajectory.positions - self.trajectory.positions[0])
-            begun = (away[:, : self._arm].max(axis=1) > self.STARTED) | (
-                away[:, self._arm :].max(axis=1) > self.STARTED_FINGER
-            )
+            begun = self._left(self.trajectory.positions, self.trajectory.positions[0])
             first = float(self.trajectory.times[int(np.argmax(begun))])
             latest = min(state.stamp - self._sent.stamp, self.trajectory.duration)
             times = np.append(first, np.arange(first, latest, self.STEP))
             self._match(state, times, first)
             self._anchor = max(self._sent.stamp, state.stamp - self.time)
         return self._started
+
+    def _left(self, positions: JointValues, start: JointValues) -> NDArray[np.bool_]:
+        """Whether positions are away from where the arm started, shape (...,)."""
+        arm, fingers = positions.furthest(start)
+        return np.asarray((arm > self.STARTED) | (fingers > self.STARTED_FINGER))
 
     def _locate(self, state: ArmState, step: float) -> float:
         """Moves ``time`` to where the arm is on the path; returns its deviation there [rad]."""
@@ -162,7 +171,7 @@ class Monitor:
     def _match(self, state: ArmState, times: Array, expected: float) -> float:
         """Sets ``time`` to that of ``times`` at which the path is nearest; see ``_locate``."""
         positions, _ = self.trajectory.sample(times)
-        errors = np.abs(positions[:, : self._arm] - state.positions[: self._arm]).max(axis=1)
+        errors, _ = positions.furthest(state.positions)
         best = int(np.argmin(errors + self.TIME_WEIGHT * np.abs(times - expected)))
         self.time = float(times[best])
         return float(errors[best])
@@ -172,13 +181,5 @@ class Monitor:
         interval = self.trajectory.interval_at(self.time)
         if not interval.holding or interval.gripping or self.time < interval.start + 0.05:
             return False
-        fingers = float(np.mean(state.positions[self._arm :]))
+        fingers = float(np.mean(state.positions.fingers))
         return fingers <= interval.phase.tool.finger + self.settings.grasp_tolerance
-
-    def _lasts(self, since: str, condition: bool, stamp: float, seconds: float) -> bool:
-        if not condition:
-            setattr(self, since, None)
-            return False
-        if getattr(self, since) is None:
-            setattr(self, since, stamp)
-        return stamp - getattr(self, since) >= seconds

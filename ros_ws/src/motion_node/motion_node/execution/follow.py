@@ -3,17 +3,17 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 from tamp_runtime.motion_report import MotionReason
 
-from .arm_state import ArmState, ArmStateBox
-from .errors import MotionError
+from ..errors import MotionError
+from ..robots.joints import JointValues
+from ..timing.trajectory import Interval, Trajectory
+from .arm_state import ArmState, ArmStates
 from .monitor import Monitor, MonitorSettings, Verdict
-from .trajectory import Interval, Trajectory
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Follower:
     START_TOLERANCE = 0.05
 
     def __init__(
-        self, arm: ArmStateBox, send: Callable[[Trajectory], None], settings: ExecutionSettings
+        self, arm: ArmStates, send: Callable[[Trajectory], None], settings: ExecutionSettings
     ) -> None:
         self._arm, self._send = arm, send
         self.settings = settings
@@ -128,14 +128,14 @@ class Follower:
         Raises:
             ExecutionError: if it does not come to rest, or joint states stay out.
         """
-        deadline = time.monotonic() + self.settings.rest_timeout
-        heard = time.monotonic()
+        deadline = self._arm.now() + self.settings.rest_timeout
+        heard = self._arm.now()
         state = self._arm.newest()
         fresh = state is not None and heard - state.received < self.settings.joint_state_timeout
         while not stopped():
             if state is not None and fresh and state.resting >= self.settings.rest_seconds:
                 return state
-            now = time.monotonic()
+            now = self._arm.now()
             if now > deadline:
                 raise ExecutionError(
                     MotionReason.TIMEOUT,
@@ -164,12 +164,13 @@ class Follower:
         Raises:
             ExecutionError: if it does not go as it should.
         """
-        begin = moving = time.monotonic()
+        begin = moving = self._arm.now()
         limit = self.settings.execution_factor * trajectory.duration + 30.0
         # Not the state from which the motion was optimised: that took a while.
         state = self._arm.newest()
         assert state is not None, "a trajectory starts from a state"
-        if np.abs(state.positions - trajectory.positions[0])[:-2].max() > self.START_TOLERANCE:
+        away, _ = state.positions.furthest(trajectory.positions[0])
+        if away > self.START_TOLERANCE:
             raise ExecutionError(
                 MotionReason.TRACKING_LOST,
                 "the arm has moved while its motion was optimised; let it rest, and ask again",
@@ -189,7 +190,7 @@ class Follower:
             # An arm that has not started may not have the trajectory yet, and rest before it.
             if monitor.started and stopped():
                 return False
-            now = time.monotonic()
+            now = self._arm.now()
             moving = now if state.stamp > previous.stamp else moving
             if now - moving > self.settings.clock_timeout:
                 raise ExecutionError(
@@ -214,9 +215,9 @@ class Follower:
         self.time = 0.0
         self._send(self._trajectory)
         first = state = self.next_state(None)
-        deadline = time.monotonic() + self.settings.brake_seconds + 5.0
+        deadline = self._arm.now() + self.settings.brake_seconds + 5.0
         while min(state.resting, state.stamp - first.stamp) < 0.15:
-            if time.monotonic() > deadline:
+            if self._arm.now() > deadline:
                 raise ExecutionError(
                     MotionReason.TRACKING_LOST, "the arm does not stop when asked to"
                 )
@@ -242,13 +243,12 @@ class Follower:
     def _hold(self, state: ArmState) -> None:
         """Stays where the arm is; fingers that press go on pressing."""
         assert self._trajectory is not None
-        fingers = self._trajectory.sample(self.time)[0][-2:]
-        positions = np.concatenate([state.positions[:-2], fingers])
+        pressing = self._trajectory.sample(self.time)[0].fingers
+        arm, fingers = np.tile(state.positions.arm, (2, 1)), np.tile(pressing, (2, 1))
         hold = Trajectory(
-            self._trajectory.joint_names,
             np.array([0.0, 0.5]),
-            np.tile(positions, (2, 1)),
-            np.zeros((2, len(positions))),
+            JointValues(arm, fingers),
+            JointValues(np.zeros_like(arm), np.zeros_like(fingers)),
             (Interval(0.0, 0.5, self.interval.phase, self.interval.gripping),),
         )
         self._trajectory, self.time = hold, 0.0

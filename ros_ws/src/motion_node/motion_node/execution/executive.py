@@ -8,21 +8,24 @@ on the way ends in a report; all waits have time limits.
 from __future__ import annotations
 
 import threading
-import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
 from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
 
 from scene_graph import Move, SceneGraph
 
-from .arm_state import ArmStateBox
-from .errors import CancelledError, InfeasibleError, InvalidPlanError
-from .following import ExecutionError, ExecutionSettings, Follower
-from .optimiser import Motion, MotionOptimiser
-from .phases import HOME, PICK
-from .trajectory import Trajectory
+from ..errors import CancelledError, InfeasibleError, InvalidPlanError
+from ..phases import HOME, PICK
+from ..planner import Motion
+from ..timing.trajectory import Trajectory
+from .arm_state import ArmStates
+from .follow import ExecutionError, ExecutionSettings, Follower
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -35,28 +38,44 @@ class Plan:
     object_names: tuple[str, ...]
 
 
+class Planner(Protocol):
+    """What plans motions; see :class:`motion_node.planner.MotionPlanner`."""
+
+    def solve(
+        self,
+        graph: SceneGraph,
+        moves: Sequence[Move],
+        arm: Array,
+        fingers: Array,
+        object_names: Sequence[str] = (),
+        cancelled: Callable[[], bool] = lambda: False,
+    ) -> Motion:
+        """The motion that carries out moves in a scene, and goes home."""
+
+    def solve_way_home(self, motion: Motion, moves_done: int, arm: Array, fingers: Array) -> Motion:
+        """The way home of an empty hand in the middle of a plan."""
+
+
 class Executive:
     """Carries plans out, one at a time.
 
     Args:
-        optimiser: the optimiser if there is one yet; it needs the robot description.
+        planner: the planner if there is one yet; it needs the robot description.
         arm: where the arm's states arrive.
         send: publishes a trajectory, which replaces the running one.
-        publish: publishes a report.
         settings: asked for anew for each plan.
     """
 
     def __init__(
         self,
-        optimiser: Callable[[], MotionOptimiser | None],
-        arm: ArmStateBox,
+        planner: Callable[[], Planner | None],
+        arm: ArmStates,
         send: Callable[[Trajectory], None],
-        publish: Callable[[MotionReport], None],
         settings: Callable[[], ExecutionSettings],
     ) -> None:
-        self._optimiser = optimiser
-        self._arm, self._send, self._publish = arm, send, publish
-        self._settings = settings
+        self._planner = planner
+        self._arm, self._send, self._settings = arm, send, settings
+        self._publish: Callable[[MotionReport], None] = lambda _report: None
         self._report = MotionReport()
 
     @property
@@ -64,19 +83,23 @@ class Executive:
         """The newest report, progress included; any thread may ask."""
         return self._report
 
-    def carry_out(self, plan: Plan, stop: threading.Event) -> None:
+    def carry_out(
+        self, plan: Plan, stop: threading.Event, publish: Callable[[MotionReport], None]
+    ) -> None:
         """Carries out a plan; when it returns, its end has been published.
 
         Args:
             stop: set from another thread to end early, as SymbolicPlan describes.
+            publish: told every change of the report; the last one has ended.
 
         Raises:
             Exception: a defect, which has been reported as such.
         """
+        self._publish = publish
         self._report = MotionReport(plan.plan_id, moves_total=len(plan.moves))
         self._tell(MotionState.OPTIMISING, f"optimising {len(plan.moves)} moves")
         try:
-            self._optimise_and_run(plan, stop)
+            self._plan_and_run(plan, stop)
         except CancelledError as error:
             self._tell(MotionState.CANCELLED, str(error))
         except InvalidPlanError as error:
@@ -105,16 +128,20 @@ class Executive:
             )
             raise
 
-    def _optimise_and_run(self, plan: Plan, stop: threading.Event) -> None:
+    def _plan_and_run(self, plan: Plan, stop: threading.Event) -> None:
         settings = self._settings()
         follower = Follower(self._arm, self._send, settings)
-        optimiser = self._wait_for_optimiser(settings.description_timeout, stop)
+        planner = self._wait_for_planner(settings.description_timeout, stop)
         state = follower.wait_for_rest(stop.is_set)
         if state is None:
             raise CancelledError("stopped on request before anything moved")
-        arm, fingers = state.positions[:-2], state.positions[-2:]
-        motion = optimiser.solve(
-            plan.graph, plan.moves, arm, fingers, plan.object_names, stop.is_set
+        motion = planner.solve(
+            plan.graph,
+            plan.moves,
+            state.positions.arm,
+            state.positions.fingers,
+            plan.object_names,
+            stop.is_set,
         )
         self._tell(
             MotionState.EXECUTING,
@@ -122,25 +149,25 @@ class Executive:
             optimisation_seconds=motion.seconds,
             duration=motion.trajectory.duration,
         )
-        self._run(motion, optimiser, follower, stop)
+        self._run(motion, planner, follower, stop)
 
-    def _wait_for_optimiser(self, seconds: float, stop: threading.Event) -> MotionOptimiser:
-        deadline = time.monotonic() + seconds
-        while (optimiser := self._optimiser()) is None:
+    def _wait_for_planner(self, seconds: float, stop: threading.Event) -> Planner:
+        deadline = self._arm.now() + seconds
+        while (planner := self._planner()) is None:
             if stop.wait(0.05):
                 raise CancelledError("stopped on request before anything moved")
-            if time.monotonic() > deadline:
+            if self._arm.now() > deadline:
                 raise ExecutionError(
                     MotionReason.NO_JOINT_STATES,
                     "no usable robot_description arrives; is the arm's driver (or sim_node) "
                     "running?",
                 )
-        return optimiser
+        return planner
 
     def _run(
         self,
         motion: Motion,
-        optimiser: MotionOptimiser,
+        planner: Planner,
         follower: Follower,
         stop: threading.Event,
     ) -> None:
@@ -154,7 +181,7 @@ class Executive:
             if not error.recoverable:
                 raise
             try:
-                self._go_home(motion, optimiser, follower, str(error))
+                self._go_home(motion, planner, follower, str(error))
             except (ExecutionError, InfeasibleError) as second:
                 raise ExecutionError(
                     error.reason, f"{error}; the arm could not go home: {second}"
@@ -169,16 +196,14 @@ class Executive:
                 progress=1.0,
             )
             return
-        self._go_home(motion, optimiser, follower, "stopped on request")
+        self._go_home(motion, planner, follower, "stopped on request")
         done, total = self._report.moves_done, self._report.moves_total
         self._tell(
             MotionState.CANCELLED,
             f"stopped on request after {done} of {total} moves; the arm is home",
         )
 
-    def _go_home(
-        self, motion: Motion, optimiser: MotionOptimiser, follower: Follower, why: str
-    ) -> None:
+    def _go_home(self, motion: Motion, planner: Planner, follower: Follower, why: str) -> None:
         """Brakes, opens the fingers, rises, and goes home."""
         phase = follower.interval.phase
         moves_done = phase.move + 1 if follower.let_go else phase.move
@@ -190,8 +215,8 @@ class Executive:
             object_name="",
         )
         state = follower.brake()
-        home = optimiser.solve_way_home(
-            motion, moves_done, state.positions[:-2], state.positions[-2:]
+        home = planner.solve_way_home(
+            motion, moves_done, state.positions.arm, state.positions.fingers
         )
         follower.follow(home.trajectory)
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .phases import HOME, Phase
+from ..phases import HOME, Phase
+from ..robots.joints import JointValues
 
 Array = NDArray[np.float64]
 
@@ -39,16 +40,14 @@ class Trajectory:
     """Positions and velocities of all joints at growing times, cubic in between (Hermite).
 
     Attributes:
-        joint_names: the arm's, then the fingers'.
         times: shape (t,), from 0 [s].
-        positions, velocities: shape (t, joints) [rad, m; per s].
+        positions, velocities: of shapes (t, n) and (t, 2) [rad, m; per s].
         intervals: what happens when, in order, without gaps.
     """
 
-    joint_names: tuple[str, ...]
     times: Array
-    positions: Array
-    velocities: Array
+    positions: JointValues
+    velocities: JointValues
     intervals: tuple[Interval, ...]
 
     @property
@@ -56,18 +55,24 @@ class Trajectory:
         """Length in time [s]."""
         return float(self.times[-1])
 
-    def sample(self, times: Array | float) -> tuple[Array, Array]:
-        """Positions and velocities at times [s], clipped to its ends; shapes (..., joints)."""
+    def sample(self, times: Array | float) -> tuple[JointValues, JointValues]:
+        """Positions and velocities at times [s], clipped to its ends; leading axes are theirs."""
         at = np.clip(np.asarray(times, dtype=float), 0.0, self.duration)
         index = np.clip(np.searchsorted(self.times, at, side="right") - 1, 0, len(self.times) - 2)
         span = (self.times[index + 1] - self.times[index])[..., None]
         u = (at - self.times[index])[..., None] / span
-        p0, p1 = self.positions[index], self.positions[index + 1]
-        v0, v1 = self.velocities[index] * span, self.velocities[index + 1] * span
-        delta = p1 - p0
-        position = p0 + u * (v0 + u * (3 * delta - 2 * v0 - v1 + u * (v0 + v1 - 2 * delta)))
-        velocity = (v0 + u * (6 * delta - 4 * v0 - 2 * v1 + 3 * u * (v0 + v1 - 2 * delta))) / span
-        return position, velocity
+
+        def cubic(values: Array, rates: Array) -> tuple[Array, Array]:
+            p0, p1 = values[index], values[index + 1]
+            v0, v1 = rates[index] * span, rates[index + 1] * span
+            delta = p1 - p0
+            position = p0 + u * (v0 + u * (3 * delta - 2 * v0 - v1 + u * (v0 + v1 - 2 * delta)))
+            rate = v0 + u * (6 * delta - 4 * v0 - 2 * v1 + 3 * u * (v0 + v1 - 2 * delta))
+            return position, rate / span
+
+        arm, arm_rate = cubic(self.positions.arm, self.velocities.arm)
+        fingers, finger_rate = cubic(self.positions.fingers, self.velocities.fingers)
+        return JointValues(arm, fingers), JointValues(arm_rate, finger_rate)
 
     def interval_at(self, time: float) -> Interval:
         """The interval of a time [s], clipped to the trajectory's."""
@@ -93,7 +98,7 @@ class Trajectory:
             for i in self.intervals
             if i.end > start and i.start < end
         )
-        return Trajectory(self.joint_names, times - start, positions, velocities, intervals)
+        return Trajectory(times - start, positions, velocities, intervals)
 
     def brake(self, start: float, seconds: float, step: float = 0.02) -> Trajectory:
         """Comes to rest along the same path, which is known to be free, from a time on [s].
@@ -107,13 +112,10 @@ class Trajectory:
         along = start + times - times**2 / (2 * seconds)
         rate = np.where(along <= interval.end, 1 - times / seconds, 0.0)[:, None]
         positions, velocities = self.sample(np.minimum(along, interval.end))
-        velocities = velocities * rate
-        arm = len(self.joint_names) - 2
-        positions[:, arm:], velocities[:, arm:] = positions[0, arm:], 0.0
+        fingers = np.tile(positions.fingers[0], (count, 1))
         return Trajectory(
-            self.joint_names,
             times,
-            positions,
-            velocities,
+            JointValues(positions.arm, fingers),
+            JointValues(velocities.arm * rate, np.zeros_like(fingers)),
             (Interval(0.0, seconds, interval.phase, interval.gripping),),
         )

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Paths to trajectories: times within the velocity and acceleration limits.
 
-A phase begins and ends at rest, so each phase is scaled in time on its own. Its path is a cubic
-spline through the steps, clamped at both ends, hence with continuous accelerations inside. The
-acceleration is piecewise linear, so its extremes lie at the knots and the limits hold exactly
-everywhere, not only at samples. Points are laid on the knots and evenly in between, so that a
-controller's cubic Hermite interpolation reproduces the spline.
+A phase begins and ends at rest, so each phase is scaled in time on its own. Points are laid on the
+knots of its spline and evenly in between, so that a controller's cubic Hermite interpolation
+reproduces the spline.
 """
 
 from __future__ import annotations
@@ -15,10 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
-from .path_problem import PhasePath
-from .phases import HOME, Phase
+from ..path_problem import PhasePath
+from ..phases import HOME, Phase
+from ..robots.joints import JointValues
+from .limits import JointLimits, shortest_duration, unit_spline
 from .trajectory import Interval, Trajectory
 
 Array = NDArray[np.float64]
@@ -43,36 +42,6 @@ class TimingSettings:
     point_seconds: float = 0.02
 
 
-@dataclass(frozen=True)
-class JointLimits:
-    """Limits of the arm's joints, each of shape (n,) [rad/s, rad/s²]."""
-
-    velocity: Array
-    acceleration: Array
-
-
-def unit_spline(q: Array) -> CubicSpline:
-    """Clamped cubic spline through configurations (steps + 1, n) over 0..1."""
-    return CubicSpline(np.linspace(0.0, 1.0, len(q)), q, bc_type="clamped")
-
-
-def shortest_duration(spline: CubicSpline, limits: JointLimits) -> float:
-    """Shortest time [s] over which the spline keeps within the limits.
-
-    The velocity's extremes lie at knots or where the acceleration crosses zero in between.
-    """
-    knots = spline.x
-    at_knots = spline(knots, 2)
-    begin, end = at_knots[:-1], at_knots[1:]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where(begin * end < 0, begin / (begin - end), 0.0)
-    crossing = knots[:-1, None] + share * np.diff(knots)[:, None]
-    speeds = np.abs(spline(np.concatenate([knots, crossing.ravel()]), 1)).max(axis=0)
-    velocity = speeds / limits.velocity
-    acceleration = np.abs(at_knots).max(axis=0) / limits.acceleration
-    return float(max(velocity.max(), np.sqrt(acceleration.max()), 0.05))
-
-
 class _Points:
     """Collects points of the arm and the fingers."""
 
@@ -80,8 +49,8 @@ class _Points:
         self.settings = settings
         self.now = 0.0
         self.times: list[Array] = []
-        self.positions: list[Array] = []
-        self.velocities: list[Array] = []
+        self.positions: list[JointValues] = []
+        self.velocities: list[JointValues] = []
         self.intervals: list[Interval] = []
 
     def travel(self, path: PhasePath, limits: JointLimits, fingers: Array) -> None:
@@ -111,27 +80,33 @@ class _Points:
     ) -> None:
         shape = (len(times), 2)
         self.times.append(self.now + times)
-        self.positions.append(np.hstack([arm, np.broadcast_to(fingers, shape)]))
-        self.velocities.append(np.hstack([speed, np.zeros(shape) if rate is None else rate]))
+        self.positions.append(JointValues(arm, np.broadcast_to(fingers, shape)))
+        self.velocities.append(JointValues(speed, np.zeros(shape) if rate is None else rate))
 
     def _close(self, phase: Phase, seconds: float, gripping: bool) -> None:
         self.intervals.append(Interval(self.now, self.now + seconds, phase, gripping))
         self.now += seconds
 
-    def finish(self, joint_names: tuple[str, ...], q: Array, fingers: Array) -> Trajectory:
+    def finish(self, q: Array, fingers: Array) -> Trajectory:
+        """The trajectory, ending at rest there."""
         self._add(np.zeros(1), q[None], np.zeros((1, len(q))), fingers)
         return Trajectory(
-            joint_names,
             np.concatenate(self.times),
-            np.vstack(self.positions),
-            np.vstack(self.velocities),
+            _joined(self.positions),
+            _joined(self.velocities),
             tuple(self.intervals),
         )
 
 
+def _joined(parts: Sequence[JointValues]) -> JointValues:
+    return JointValues(
+        np.concatenate([part.arm for part in parts]),
+        np.concatenate([part.fingers for part in parts]),
+    )
+
+
 def time_paths(
     paths: Sequence[PhasePath],
-    joint_names: tuple[str, ...],
     limits: JointLimits,
     settings: TimingSettings,
     fingers: Array,
@@ -162,4 +137,4 @@ def time_paths(
             seconds = settings.close_seconds if closing else settings.open_seconds
             points.grip(path.phase, path.q[-1], now, target, seconds)
             now = target
-    return points.finish(joint_names, paths[-1].q[-1], now)
+    return points.finish(paths[-1].q[-1], now)
