@@ -27,7 +27,12 @@ INTERFACES_FOLDER: Final = ROOT / "ros_ws" / "src" / "tamp_interfaces"
 
 _GENERATED: Final = "<!-- Written by `make reference` from the sources; changes belong there. -->"
 _KINDS: Final = (("msg", "Messages"), ("srv", "Services"), ("action", "Actions"))
-_TYPES: Final[Mapping[type, str]] = {bool: "bool", int: "integer", float: "double", str: "string"}
+_TYPES: Final[Mapping[type | None, str]] = {
+    bool: "bool",
+    int: "integer",
+    float: "double",
+    str: "string",
+}
 
 
 class DeclarationError(ValueError):
@@ -58,10 +63,14 @@ def node_class_of(module: ModuleType) -> type[Node]:
     return found[0]
 
 
-def type_name(value: Any) -> str:
-    """The ROS name of a parameter's type, from its default."""
+def type_name(value: Any, element: type | None = None) -> str:
+    """The ROS name of a parameter's type, from its default; ``element`` tells that of an empty one.
+
+    Raises:
+        KeyError: if neither does.
+    """
     if isinstance(value, Sequence) and not isinstance(value, str):
-        return f"{type_name(value[0])}[]" if value else "array"
+        return f"{_TYPES[type(value[0]) if value else element]}[]"
     return _TYPES[type(value)]
 
 
@@ -92,7 +101,7 @@ def parameter_table(specs: Iterable[ParameterSpec]) -> list[str]:
         default = f"`{json.dumps(spec.default, ensure_ascii=False)}`"
         cells = (
             f"`{spec.name}`",
-            type_name(spec.default),
+            type_name(spec.default, spec.element),
             default,
             range_text(spec),
             "yes" if spec.read_only else "",

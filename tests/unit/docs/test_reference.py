@@ -48,6 +48,12 @@ def test_type_is_that_of_the_default(default: object, name: str) -> None:
     assert write_reference.type_name(default) == name
 
 
+def test_type_of_an_empty_array_is_told() -> None:
+    spec = ParameterSpec("limits", [], "of the joints", element=float)
+    *_, row = write_reference.parameter_table([spec])
+    assert row.startswith("| `limits` | double[] | `[]` |")
+
+
 def test_table_has_range_default_and_meaning() -> None:
     spec = ParameterSpec("blocks", 5, "blocks in the scene", 3, 7, read_only=True)
     *_, row = write_reference.parameter_table([spec])

@@ -16,6 +16,12 @@ from rcl_interfaces.msg import (
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+_ARRAYS = {
+    float: Parameter.Type.DOUBLE_ARRAY,
+    int: Parameter.Type.INTEGER_ARRAY,
+    str: Parameter.Type.STRING_ARRAY,
+}
+
 
 @dataclass(frozen=True)
 class ParameterSpec:
@@ -26,6 +32,7 @@ class ParameterSpec:
         minimum, maximum: inclusive range of a number, or of every element of an array.
         read_only: can be given at start only.
         check: further test; returns what is wrong with a value, or an empty string.
+        element: type of the elements of an array whose default, an empty one, does not tell it.
     """
 
     name: str
@@ -35,6 +42,7 @@ class ParameterSpec:
     maximum: float | None = None
     read_only: bool = False
     check: Callable[[Any], str] | None = None
+    element: type | None = None
 
     def problem(self, value: Any) -> str:
         """What is wrong with a value, or an empty string."""
@@ -69,6 +77,14 @@ class ParameterSpec:
         return descriptor
 
 
+def _declare(node: Node, spec: ParameterSpec) -> Any:
+    if spec.element is None:
+        return node.declare_parameter(spec.name, spec.default, spec.descriptor()).value
+    # rclpy takes an empty list for one of bytes. Declared by type, it is not set until given.
+    declared = node.declare_parameter(spec.name, _ARRAYS[spec.element], spec.descriptor())
+    return spec.default if declared.value is None else declared.value
+
+
 def declare_parameters(
     node: Node,
     specs: Sequence[ParameterSpec],
@@ -86,7 +102,7 @@ def declare_parameters(
     values = {}
     for spec in specs:
         try:
-            value = node.declare_parameter(spec.name, spec.default, spec.descriptor()).value
+            value = _declare(node, spec)
         except Exception as error:
             raise ValueError(f"parameter {spec.name}: {error}") from error
         if problem := spec.problem(value):
