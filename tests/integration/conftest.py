@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+import functools
 import os
+import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
 
@@ -15,7 +17,7 @@ import rclpy
 from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
-from ros2_run import Process, Start, ros2_run
+from ros2_run import Process, Spawn, Start, start_process
 from tamp_runtime.node_process import prepare_process
 
 prepare_process()
@@ -102,13 +104,13 @@ def ros_context(domain_id: int) -> Iterator[RosContext]:
 
 
 @pytest.fixture
-def start(domain_id: int) -> Iterator[Start]:
-    """Starts executables in the test's domain; what still runs when the test ends is killed."""
+def spawn(domain_id: int) -> Iterator[Spawn]:
+    """Starts commands in the test's domain; what still runs when the test ends is killed."""
     del domain_id  # it is in the environment
     processes: list[Process] = []
 
-    def run(package: str, executable: str, *arguments: str, ignore_sigint: bool = False) -> Process:
-        processes.append(ros2_run(package, executable, *arguments, ignore_sigint=ignore_sigint))
+    def run(*command: str, ignored: Collection[signal.Signals] = ()) -> Process:
+        processes.append(start_process(*command, ignored=ignored))
         return processes[-1]
 
     yield run
@@ -116,3 +118,9 @@ def start(domain_id: int) -> Iterator[Start]:
         if process.poll() is None:
             process.kill()
             process.communicate(timeout=PATIENCE)
+
+
+@pytest.fixture
+def start(spawn: Spawn) -> Start:
+    """Starts executables by ``ros2 run``, as :func:`spawn` starts commands."""
+    return functools.partial(spawn, "ros2", "run")

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
+import ctypes
 import signal
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import NamedTuple
 
 from tamp_runtime.node_process import EXIT_STUCK
@@ -13,9 +14,13 @@ from tamp_runtime.node_process import EXIT_STUCK
 Process = subprocess.Popen[str]
 #: ``start(package, executable, *arguments)``, the fixture ``start``.
 Start = Callable[..., Process]
+#: ``spawn(*command)``, the fixture ``spawn``.
+Spawn = Callable[..., Process]
 
 #: A process imports rclpy and finds its neighbours; slow machines need a while [s].
 PROCESS_TIMEOUT = 120.0
+
+_PR_SET_PDEATHSIG = 1
 
 
 class Ended(NamedTuple):
@@ -26,27 +31,30 @@ class Ended(NamedTuple):
     stderr: str
 
 
-def ros2_run(
-    package: str, executable: str, *arguments: str, ignore_sigint: bool = False
-) -> Process:
-    """Starts an executable in the DDS domain of the environment.
+def start_process(*command: str, ignored: Collection[signal.Signals] = ()) -> Process:
+    """Starts a command in the DDS domain of the environment; it does not outlive the tests.
 
     Args:
-        ignore_sigint: as a script starts what it puts into the background.
+        ignored: signals that the process inherits as ignored, as SIGINT in a script's background.
     """
-    number = signal.SIG_IGN if ignore_sigint else signal.SIG_DFL
+
+    def set_up_child() -> None:
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN if number in ignored else signal.SIG_DFL)
+
     return subprocess.Popen(
-        ["ros2", "run", package, executable, *arguments],
+        command,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, number),
+        preexec_fn=set_up_child,
     )
 
 
-def finish(process: Process) -> Ended:
+def finish(process: Process, timeout: float = PROCESS_TIMEOUT) -> Ended:
     """Waits for the end of a process, which must be neither a traceback nor a hang."""
-    stdout, stderr = process.communicate(timeout=PROCESS_TIMEOUT)
+    stdout, stderr = process.communicate(timeout=timeout)
     assert process.returncode != EXIT_STUCK, stderr
     assert "Traceback" not in stderr, stderr
     return Ended(process.returncode, stdout, stderr)

@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 import signal
-import subprocess
 import sys
 
 import pytest
-from ros2_run import finish
+from ros2_run import Spawn, finish
 
 NODE = """
 import sys
@@ -26,18 +25,8 @@ sys.exit(run_node(Running))
 
 @pytest.mark.parametrize("ignored", [False, True], ids=["heard", "ignored"])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_a_running_node(
-    domain_id: int, number: signal.Signals, ignored: bool
-) -> None:
-    assert domain_id
-    action = signal.SIG_IGN if ignored else signal.SIG_DFL
-    process = subprocess.Popen(
-        [sys.executable, "-c", NODE],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        preexec_fn=lambda: signal.signal(number, action),
-    )
+def test_a_signal_ends_a_running_node(spawn: Spawn, number: signal.Signals, ignored: bool) -> None:
+    process = spawn(sys.executable, "-c", NODE, ignored=[number] if ignored else [])
     assert process.stdout is not None
     assert process.stdout.readline() == "here\n"
     process.send_signal(number)

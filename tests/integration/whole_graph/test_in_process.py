@@ -19,6 +19,8 @@ from planner_node.client import PlannerClient
 from planner_node.node import PlannerNode
 from sim_node.node import SimNode
 
+#: How long a thing may take on a machine that has a lot to do [s].
+PATIENCE = 120.0
 LAYOUT = ["red_box,blue_box", "", "green_box"]
 
 
@@ -51,24 +53,21 @@ def judge(ros_context: Any) -> Judge:
     return judge
 
 
-@pytest.mark.timeout(240)
+@pytest.mark.timeout(600)
 def test_the_graph_builds_a_tower_that_the_simulator_confirms(
     ros_context: Any, judge: Judge
 ) -> None:
+    readers = judge.get_subscriptions_info_by_topic("/sim/ground_truth")
+    assert [reader.node_name for reader in readers] == ["judge"], "only evaluation may"
     with PlannerClient(context=ros_context.context) as planner:
-        planner.start("red on green", timeout=30.0)
-        result = planner.result(timeout=200.0)
+        planner.start("red on green", timeout=PATIENCE)
+        result = planner.result(timeout=3.0 * PATIENCE)
         assert result.status == AchieveGoal.Result.SUCCESS, result.message
         assert judge.stacks()[2][:2] == ("green_box", "red_box")
         assert result.moves_planned == 2  # the shortest plan: blue away, red over
         assert result.moves_executed >= 2
         # The same goal again is true already: nothing moves.
-        planner.start("red on green", timeout=30.0)
-        again = planner.result(timeout=60.0)
+        planner.start("red on green", timeout=PATIENCE)
+        again = planner.result(timeout=PATIENCE)
         assert again.status == AchieveGoal.Result.ALREADY_TRUE
         assert again.moves_executed == 0
-
-
-def test_only_evaluation_reads_the_ground_truth(judge: Judge) -> None:
-    readers = judge.get_subscriptions_info_by_topic("/sim/ground_truth")
-    assert [reader.node_name for reader in readers] == ["judge"]

@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 import signal
-import subprocess
 import sys
 
 import pytest
-from ros2_run import PROCESS_TIMEOUT
+from ros2_run import PROCESS_TIMEOUT, Spawn
 from tamp_runtime.node_process import EXIT_STUCK
 
 STUCK = """
@@ -37,15 +36,9 @@ sys.exit(run_node(Stuck))
 
 @pytest.mark.parametrize("callback, destructor", [("self.stay()", "pass"), ("pass", "self.stay()")])
 def test_a_stuck_node_is_ended_and_shows_where_it_hangs(
-    domain_id: int, callback: str, destructor: str
+    spawn: Spawn, callback: str, destructor: str
 ) -> None:
-    assert domain_id
-    process = subprocess.Popen(
-        [sys.executable, "-c", STUCK.format(callback=callback, destructor=destructor)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    process = spawn(sys.executable, "-c", STUCK.format(callback=callback, destructor=destructor))
     assert process.stdout is not None
     assert process.stdout.readline() == "here\n"
     process.send_signal(signal.SIGINT)
