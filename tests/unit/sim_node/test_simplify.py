@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -187,12 +188,18 @@ def test_without_a_cache_folder_the_temporary_one_serves(
 
 def test_the_texture_comes_along(ball: Path) -> None:
     folder = ball.parent / "meshes"
-    mesh = sphere()
-    colored = Mesh(
-        mesh.vertices, mesh.faces, mesh.parts, np.full((len(mesh.faces), 2), 0.25), "c.png"
-    )
-    write_obj(colored, folder / "ball.obj")
+    texture = np.full((len(sphere().faces), 2), 0.25)
+    write_obj(replace(sphere(), texture=texture, image="c.png"), folder / "ball.obj")
     (folder / "c.png").write_bytes(b"a picture")
     light = meshes(light_urdf(ball))[0]
-    assert (light.parent / "c.png").read_bytes() == b"a picture"
+    assert (light.parent / read_obj(light).image).read_bytes() == b"a picture"
     np.testing.assert_array_equal(read_obj(light).texture, 0.25)
+
+
+def test_the_tolerance_is_in_metres_whatever_the_unit_of_the_file(ball: Path) -> None:
+    in_metres = len(read_obj(meshes(light_urdf(ball))[0]).faces)
+    in_millimetres = replace(sphere(), vertices=1000.0 * sphere().vertices)
+    write_obj(in_millimetres, ball.parent / "meshes" / "ball.obj")
+    ball.write_text(ball.read_text().replace(".obj", '.obj" scale="0.001 0.001 0.001'))
+    scaled = len(read_obj(meshes(light_urdf(ball))[0]).faces)
+    assert scaled == pytest.approx(in_metres, rel=0.1)

@@ -57,7 +57,8 @@ class World:
             fixedTimeStep=timestep, numSolverIterations=100, physicsClientId=self.client
         )
         pybullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
-        create_table(self.client)
+        table = create_table(self.client)
+        self._camera = CameraRenderer(self.client, self.config.camera, still_bodies=[table])
         self.robot = pybullet.loadURDF(
             str(light_urdf(arm.urdf)),
             useFixedBase=True,
@@ -74,8 +75,8 @@ class World:
         self.lower, self.upper, self.max_effort, self.max_velocity = (
             np.array([info[column] for info in joints]) for column in range(8, 12)
         )
+        self._gains, self._velocity_gains = arm.gains, np.ones(len(joints))
         self._couple_fingers(*(by_name[name][0] for name in arm.finger_joints))
-        self._camera = CameraRenderer(self.client, self.config.camera)
         self._send_home()
 
     def __enter__(self) -> World:
@@ -151,8 +152,8 @@ class World:
             targetPositions=positions,
             targetVelocities=velocities,
             forces=self.max_effort,
-            positionGains=self.arm.gains,
-            velocityGains=np.ones_like(positions),
+            positionGains=self._gains,
+            velocityGains=self._velocity_gains,
             physicsClientId=self.client,
         )
 

@@ -8,6 +8,7 @@ import os
 import shutil
 import tempfile
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -37,25 +38,21 @@ def light_urdf(original: Path, tolerance: float = TOLERANCE) -> Path:
     """
     tree = ElementTree.parse(original)
     for mesh in tree.iterfind(".//mesh"):
-        mesh.set("filename", str(_absolute(mesh.get("filename", ""), original.parent)))
-    heavy = sorted(
-        {
-            Path(mesh.get("filename", ""))
-            for mesh in tree.iterfind(".//visual/geometry/mesh")
-            if _is_heavy(Path(mesh.get("filename", "")))
-        }
-    )
-    folder = cache_folder() / f"{original.stem}-{_digest([original, *heavy], tolerance)}"
+        name = mesh.get("filename", "").removeprefix(_PACKAGE)
+        mesh.set("filename", str(original.parent / name))
+    visuals = tree.findall(".//visual/geometry/mesh")
+    heavy = {path: _scale(mesh) for mesh in visuals if _is_heavy(path := _path(mesh))}
+    folder = cache_folder() / f"{original.stem}-{_digest([original, *sorted(heavy)], tolerance)}"
     result = folder / original.name
     if result.is_file():
         return result
     part = Path(tempfile.mkdtemp(prefix=f"{folder.name}.", dir=folder.parent))
     try:
-        light = {path: _write_light(path, part, tolerance) for path in heavy}
-        for mesh in tree.iterfind(".//visual/geometry/mesh"):
-            path = Path(mesh.get("filename", ""))
-            if path in light:
-                mesh.set("filename", str(folder / light[path]))
+        for path, scale in heavy.items():
+            _write_light(path, part / _light_name(path), tolerance / scale)
+        for mesh in visuals:
+            if (path := _path(mesh)) in heavy:
+                mesh.set("filename", str(folder / _light_name(path)))
         tree.write(part / original.name, encoding="utf-8", xml_declaration=True)
         part.rename(folder)
     except OSError:
@@ -89,8 +86,13 @@ def cache_folder() -> Path:
     return folder
 
 
-def _absolute(name: str, folder: Path) -> Path:
-    return folder / name.removeprefix(_PACKAGE)
+def _path(mesh: ElementTree.Element) -> Path:
+    return Path(mesh.get("filename", ""))
+
+
+def _scale(mesh: ElementTree.Element) -> float:
+    """Metres in the URDF for one unit in the mesh's file."""
+    return max(abs(float(factor)) for factor in mesh.get("scale", "1").split())
 
 
 def _is_heavy(path: Path) -> bool:
@@ -106,12 +108,16 @@ def _digest(sources: list[Path], tolerance: float) -> str:
     return digest.hexdigest()[:16]
 
 
-def _write_light(path: Path, folder: Path, tolerance: float) -> str:
-    """Writes a light mesh with its texture into the folder; returns its file name."""
+def _light_name(path: Path) -> str:
+    """File name in the light URDF's folder; two folders may each hold a file of this name."""
+    return f"{hashlib.sha256(str(path.parent).encode()).hexdigest()[:8]}-{path.name}"
+
+
+def _write_light(path: Path, target: Path, tolerance: float) -> None:
+    """Writes the light copy of a mesh, with its texture beside it."""
     mesh = simplify(read_obj(path), tolerance)
-    # Two folders may each hold a mesh of this name.
-    name = f"{hashlib.sha256(str(path).encode()).hexdigest()[:8]}-{path.name}"
-    write_obj(mesh, folder / name)
-    if mesh.image:
-        shutil.copyfile(path.parent / mesh.image, folder / mesh.image)
-    return name
+    image = path.parent / mesh.image
+    name = _light_name(image) if image.is_file() else ""
+    if name:
+        shutil.copyfile(image, target.parent / name)
+    write_obj(replace(mesh, image=name), target)
