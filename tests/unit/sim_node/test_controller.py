@@ -13,6 +13,7 @@ from sim_node.world import World
 
 HOME = PANDA.home_positions
 JOINTS = PANDA.joints
+IS_ARM = np.isin(JOINTS, PANDA.arm_joints)
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +29,7 @@ def reach(world: World, arm: ArmController, seconds: float) -> float:
         arm.update()
         target = arm._target()[0]
         world.step()
-        worst = max(worst, float(np.abs(world.joint_state()[0] - target)[:7].max()))
+        worst = max(worst, float(np.abs(world.joint_state()[0] - target)[IS_ARM].max()))
     return worst
 
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Sequence
+from typing import Final
 
 import numpy as np
 
 from scene_graph import BOX, COLORS, Stacks, object_name, split_object_name
 
-MIN_BLOCKS = 1
-MAX_BLOCKS = 7
+#: How many blocks can be put on the table.
+MIN_BLOCKS: Final = 1
+MAX_BLOCKS: Final = 7
 
 
 class LayoutError(ValueError):

@@ -44,8 +44,6 @@ from .scene import SceneConfig
 from .trajectory import TrajectoryError
 from .world import World
 
-__all__ = ["PARAMETERS", "SimNode", "run"]
-
 #: Physics steps between two joint states (60 Hz) and joint states between two pictures (10 Hz).
 STEPS_PER_STATE = 4
 STATES_PER_FRAME = 6

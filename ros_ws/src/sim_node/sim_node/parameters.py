@@ -11,7 +11,7 @@ from tamp_runtime.parameters import ParameterSpec
 from scene_graph import Stacks
 
 from .arm_models import ARM_MODELS, PANDA
-from .layouts import parse_layout, random_layout
+from .layouts import MAX_BLOCKS, parse_layout, random_layout
 
 
 def _robot_problem(name: str) -> str:
@@ -34,7 +34,9 @@ PARAMETERS: Final = (
     ParameterSpec(
         "seed", 0, "seed of the first scene", minimum=0, maximum=2**31 - 1, read_only=True
     ),
-    ParameterSpec("blocks", 5, "blocks in the first scene", minimum=3, maximum=7, read_only=True),
+    ParameterSpec(
+        "blocks", 5, "blocks in the first scene", minimum=3, maximum=MAX_BLOCKS, read_only=True
+    ),
     ParameterSpec(
         "layout",
         [""],

@@ -72,17 +72,16 @@ def cache_folder() -> Path:
     Raises:
         OSError: if that cannot be written either.
     """
-    chosen = Path(os.environ.get("XDG_CACHE_HOME", ""))
-    folder = (chosen if chosen.is_absolute() else Path("~/.cache").expanduser()) / "sim_node"
     try:
+        chosen = Path(os.environ.get("XDG_CACHE_HOME", ""))
+        folder = (chosen if chosen.is_absolute() else Path.home() / ".cache") / "sim_node"
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        writable = False
-    else:
-        writable = os.access(folder, os.W_OK)
-    if not writable:
-        folder = Path(tempfile.gettempdir()) / f"sim_node-{os.getuid()}"
-        folder.mkdir(mode=0o700, exist_ok=True)
+        if os.access(folder, os.W_OK):
+            return folder
+    except (OSError, RuntimeError):  # a file in its way, or a user without a home
+        pass
+    folder = Path(tempfile.gettempdir()) / f"sim_node-{os.getuid()}"
+    folder.mkdir(mode=0o700, exist_ok=True)
     return folder
 
 
