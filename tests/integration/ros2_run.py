@@ -45,6 +45,7 @@ def start_process(*command: str, ignored: Collection[signal.Signals] = ()) -> Pr
 
     return subprocess.Popen(
         command,
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import faulthandler
 import os
+import signal
 import sys
 import threading
 import time
@@ -12,6 +13,7 @@ import traceback
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from types import FrameType
 from typing import Final
 
 import rclpy
@@ -59,20 +61,26 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
         where each of its threads was.
     """
     prepare_process()
+    interrupts = _Interrupts()
+    signal.signal(signal.SIGINT, interrupts)
     # rclpy's own handlers of SIGINT and SIGTERM wake the executor; Python's wait for a message.
-    # They also replace an inherited SIG_IGN.
+    # They replace an inherited SIG_IGN, and call what was installed for SIGINT before.
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.ALL)
-    threading.Thread(target=_end_in_time, args=[rclpy.get_default_context()], daemon=True).start()
+    context = rclpy.get_default_context()
+    threading.Thread(target=_end_in_time, args=[context], daemon=True).start()
     executor = MultiThreadedExecutor(num_threads=threads)
     node: Node | None = None
     try:
         node = make_node()
         executor.add_node(node)
+        interrupts.awaited = False
         _spin(executor, node)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
-    except (ValueError, OSError) as error:
-        if node is not None:
+    except Exception as error:
+        if not context.ok():  # stopped while it started: nothing of ROS works any more then
+            return 0
+        if node is not None or not isinstance(error, ValueError | OSError):
             raise
         print(f"cannot start: {error}", file=sys.stderr)
         return 2
@@ -89,6 +97,20 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
         if node is not None:
             node.destroy_node()
     return 0
+
+
+class _Interrupts:
+    """What SIGINT does besides rclpy's shutdown: it interrupts a node that starts, and no other.
+
+    Raised in the middle of the executor, KeyboardInterrupt leaves half-made tasks behind.
+    """
+
+    def __init__(self) -> None:
+        self.awaited = True
+
+    def __call__(self, _number: int, _frame: FrameType | None) -> None:
+        if self.awaited:
+            raise KeyboardInterrupt
 
 
 def _end_in_time(context: Context) -> None:
