@@ -1,25 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
+"""Trajectories: times within the limits, what happens when, braking."""
+
 from __future__ import annotations
 
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from motion_scenes import scene
+from simulated_arm import two_moves
 
-from motion_node.optimiser import MotionOptimiser
 from motion_node.phases import HOME, PICK
-from motion_node.robots import PANDA
 from motion_node.timing.limits import JointLimits, shortest_duration, unit_spline
 from motion_node.timing.trajectory import Trajectory
-from scene_graph import Move
 
 
 @pytest.fixture(scope="module")
-def trajectory(optimiser: MotionOptimiser) -> Trajectory:
-    graph = scene((2, 1, 0), np.random.default_rng(1))
-    home = np.array(PANDA.home)
-    return optimiser.solve(graph, [Move(0, 2), Move(1, 2)], home, np.array([0.04, 0.04])).trajectory
+def trajectory() -> Trajectory:
+    return two_moves()
 
 
 def test_the_shortest_duration_just_keeps_the_limits() -> None:

@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What becomes of a plan: carried out, stopped in any phase, or given up for a reason."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+from simulated_arm import BLOCKS, OPEN, PLAN, FakePlanner, SimulatedArm, two_moves
+from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
+
+from motion_node.errors import KEYFRAMES, CancelledError, InfeasibleError, InvalidPlanError
+from motion_node.execution.executive import Executive
+from motion_node.execution.follow import ExecutionSettings
+from motion_node.phases import HOME, PICK, PLACE
+
+
+class Bench:
+    """An executive with its neighbours, and what it reported."""
+
+    def __init__(self) -> None:
+        self.arm, self.planner = SimulatedArm(), FakePlanner()
+        self.reports: list[MotionReport] = []
+        self.stop = threading.Event()
+        self.planners: Iterator[FakePlanner | None] = iter(lambda: self.planner, 0)
+        self.settings = ExecutionSettings()
+        self.executive = Executive(
+            lambda: next(self.planners), self.arm, self.arm.send, lambda: self.settings
+        )
+
+    def carry_out(self) -> MotionReport:
+        """Carries the two moves out; the report that ends them."""
+        self.executive.carry_out(PLAN, self.stop, self.reports.append)
+        ends = [report for report in self.reports if report.state.ended]
+        assert ends == self.reports[-1:], "there is one end, and nothing after it"
+        assert self.executive.report == ends[0]
+        return ends[0]
+
+    def when(
+        self, phase: str, move: int, action: Callable[[], object], progress: float = 0
+    ) -> None:
+        """Does something as soon as that phase is reported."""
+
+        def there() -> bool:
+            report = self.executive.report
+            return (report.phase, report.move) == (phase, move) and report.progress > progress
+
+        self.arm.when(there, action)
+
+
+@pytest.fixture
+def bench() -> Bench:
+    return Bench()
+
+
+def test_a_plan_is_carried_out_and_reported(bench: Bench) -> None:
+    end = bench.carry_out()
+    assert end == MotionReport(
+        "a",
+        MotionState.SUCCEEDED,
+        message="every move was carried out and the arm is home",
+        move=1,
+        moves_done=2,
+        moves_total=2,
+        phase=HOME,
+        progress=1.0,
+        optimisation_seconds=0.25,
+        duration=two_moves().duration,
+    )
+    assert bench.arm.at_home()
+    assert len(bench.arm.sent) == 1
+    assert bench.planner.asked == [(PLAN.graph, PLAN.moves, BLOCKS)]
+    assert bench.reports[0].state is MotionState.OPTIMISING
+    executing = [report for report in bench.reports if report.state is MotionState.EXECUTING]
+    assert [(report.phase, report.object_name) for report in executing] == [
+        ("", ""),
+        (PICK, "green_box"),
+        (PLACE, "green_box"),
+        (PICK, "blue_box"),
+        (PLACE, "blue_box"),
+        (HOME, ""),
+    ]
+    assert [report.moves_done for report in executing] == [0, 0, 0, 1, 1, 2]
+    progress = [report.progress for report in executing]
+    assert progress == sorted(progress)
+
+
+@pytest.mark.parametrize(
+    ("phase", "move", "moves_done"),
+    [(PICK, 0, 0), (PLACE, 0, 1), (PICK, 1, 1), (PLACE, 1, 2), (HOME, 1, 2)],
+)
+def test_a_stop_in_any_phase_ends_at_home_with_an_empty_hand(
+    bench: Bench, phase: str, move: int, moves_done: int
+) -> None:
+    bench.when(phase, move, bench.stop.set)
+    end = bench.carry_out()
+    assert (end.state, end.reason) == (MotionState.CANCELLED, MotionReason.NONE)
+    assert end.moves_done == moves_done
+    assert end.message == f"stopped on request after {moves_done} of 2 moves; the arm is home"
+    assert bench.arm.at_home()
+    np.testing.assert_allclose(bench.arm.joints.fingers, OPEN, atol=1e-3)
+    assert len(bench.arm.sent) == 3  # the plan, the brake, the way home
+    assert bench.planner.ways_home == [moves_done]
+
+
+def test_a_block_in_hand_is_put_down_before_the_arm_brakes(bench: Bench) -> None:
+    bench.when(PLACE, 0, bench.stop.set)
+    bench.carry_out()
+    brake, joints = bench.arm.sent[1]
+    assert joints.fingers.min() > 0.9 * OPEN
+    assert not brake.velocities.arm[-1].any()
+    placed = two_moves().sample(two_moves().intervals[3].end)[0]
+    np.testing.assert_allclose(joints.arm, placed.arm, atol=0.01)
+
+
+def test_a_stop_while_the_fingers_close_leaves_the_block_standing(bench: Bench) -> None:
+    bench.arm.when(lambda: bench.arm.joints.fingers[0] < 0.9 * OPEN, bench.stop.set)
+    assert bench.carry_out().moves_done == 0
+    assert bench.planner.ways_home == [0]
+    assert bench.arm.at_home()
+
+
+def test_a_stop_while_it_is_planned_moves_nothing(bench: Bench) -> None:
+    bench.planner.while_solving = bench.stop.set
+    bench.planner.errors["solve"] = CancelledError("cancelled while optimising")
+    end = bench.carry_out()
+    assert (end.state, end.message) == (MotionState.CANCELLED, "cancelled while optimising")
+    assert not bench.arm.sent
+
+
+def test_a_stop_before_the_arm_rests_moves_nothing(bench: Bench) -> None:
+    bench.arm.trembling = 0.01
+    bench.arm.when(lambda: bench.arm.now() > 1010.0, bench.stop.set)
+    assert bench.carry_out().state is MotionState.CANCELLED
+    assert not bench.planner.asked
+
+
+def test_a_stop_before_there_is_a_planner_moves_nothing(bench: Bench) -> None:
+    bench.planners = iter([None])
+    bench.stop.set()
+    assert bench.carry_out().state is MotionState.CANCELLED
+
+
+def test_a_planner_that_comes_late_is_waited_for(bench: Bench) -> None:
+    bench.planners = iter([None, bench.planner])
+    assert bench.carry_out().state is MotionState.SUCCEEDED
+
+
+def test_without_a_description_nothing_starts(bench: Bench) -> None:
+    def none() -> Iterator[None]:
+        while True:
+            bench.arm.pass_time(100.0)
+            yield None
+
+    bench.planners = none()
+    end = bench.carry_out()
+    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.NO_JOINT_STATES)
+    assert "robot_description" in end.message
+
+
+def test_without_joint_states_nothing_starts(bench: Bench) -> None:
+    bench.arm.silent = True
+    end = bench.carry_out()
+    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.NO_JOINT_STATES)
+    assert "joint_states" in end.message
+    assert not bench.planner.asked
+
+
+def test_a_plan_waits_until_the_arm_rests(bench: Bench) -> None:
+    """The trajectory of an earlier life of the node may still be under way."""
+    bench.arm.send(two_moves())
+    assert bench.carry_out().state is MotionState.SUCCEEDED
+    (_, _), (second, _) = bench.arm.sent
+    np.testing.assert_allclose(second.positions.arm[0], 0.0, atol=0.01)
+
+
+def test_what_does_not_fit_the_scene_is_refused(bench: Bench) -> None:
+    bench.planner.errors["solve"] = InvalidPlanError("no such block", -1, "red_box")
+    end = bench.carry_out()
+    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.INVALID_PLAN)
+    assert (end.message, end.object_name, end.move) == ("no such block", "red_box", 0)
+    assert not bench.arm.sent
+
+
+def test_an_infeasible_plan_names_bound_block_and_constraint(bench: Bench) -> None:
+    bench.planner.errors["solve"] = InfeasibleError(
+        KEYFRAMES, "reach", object_name="green_box", violation=0.5, move=2, phase=HOME
+    )
+    end = bench.carry_out()
+    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.INFEASIBLE)
+    assert (end.bound, end.object_name, end.constraint) == (KEYFRAMES, "green_box", "reach")
+    # The way home is the move after the last one, which messages do not count.
+    assert (end.move, end.phase) == (1, HOME)
+
+
+def test_joint_states_that_stop_end_the_execution(bench: Bench) -> None:
+    bench.when(PLACE, 0, lambda: setattr(bench.arm, "silent", True))
+    end = bench.carry_out()
+    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.NO_JOINT_STATES)
+
+
+def test_an_arm_stuck_with_a_block_in_hand_is_not_sent_home(bench: Bench) -> None:
+    bench.when(PLACE, 0, lambda: setattr(bench.arm, "stuck", True))
+    end = bench.carry_out()
+    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.TRACKING_LOST)
+    assert end.moves_done == 0
+    assert not bench.planner.ways_home
+
+
+def test_an_arm_that_obeys_again_goes_home_with_its_empty_hand(bench: Bench) -> None:
+    bench.when(PICK, 0, lambda: setattr(bench.arm, "stuck", True), progress=0.03)
+    bench.arm.when(lambda: len(bench.arm.sent) > 1, lambda: setattr(bench.arm, "stuck", False))
+    end = bench.carry_out()
+    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.TRACKING_LOST)
+    assert end.message.endswith("; the arm is home")
+    assert bench.arm.at_home()
+
+
+@pytest.mark.parametrize("move", [0, 1])
+def test_fingers_that_close_on_nothing_send_the_arm_home(bench: Bench, move: int) -> None:
+    bench.when(PICK, move, lambda: setattr(bench.arm, "block", 0.0))
+    end = bench.carry_out()
+    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.GRASP_LOST)
+    assert BLOCKS[move] in end.message
+    assert end.moves_done == move
+    assert bench.planner.ways_home == [move]
+    assert bench.arm.at_home()
+
+
+def test_a_way_home_that_is_blocked_is_said(bench: Bench) -> None:
+    bench.arm.block = 0.0
+    bench.planner.errors["solve_way_home"] = InfeasibleError("path", "clearance of hand to stack1")
+    end = bench.carry_out()
+    assert end.reason is MotionReason.GRASP_LOST
+    assert "the arm could not go home" in end.message
+    assert "stack1" in end.message
+
+
+def test_a_defect_is_reported_and_raised(bench: Bench) -> None:
+    bench.planner.errors["solve"] = RuntimeError("made for the test")
+    with pytest.raises(RuntimeError, match="made for the test"):
+        bench.carry_out()
+    end = bench.executive.report
+    assert bench.reports[-1] == end
+    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.INTERNAL_ERROR)
+    assert "made for the test" in end.message
+
+
+def test_one_plan_after_the_other_and_the_settings_of_each(bench: Bench) -> None:
+    assert bench.carry_out().state is MotionState.SUCCEEDED
+    bench.reports.clear()
+    bench.arm.deaf = True
+    bench.settings = ExecutionSettings(joint_state_timeout=1.0)
+    assert bench.carry_out().reason is MotionReason.TRACKING_LOST
+    assert bench.reports[0].progress == 0.0
