@@ -20,6 +20,9 @@ Spawn = Callable[..., Process]
 #: A process imports rclpy and finds its neighbours; slow machines need a while [s].
 PROCESS_TIMEOUT = 120.0
 
+#: How long the arm may take to build a tower on a machine that has a lot to do [s].
+TOWER_TIMEOUT = 400.0
+
 _PR_SET_PDEATHSIG = 1
 
 

@@ -15,7 +15,7 @@ from tamp_runtime.qos import LATCHED
 
 from motion_node.node import MotionNode
 from perception_node.node import PerceptionNode
-from planner_node.client import PlannerClient
+from planner_node.cli.client import PlannerClient
 from planner_node.node import PlannerNode
 from sim_node.node import SimNode
 
