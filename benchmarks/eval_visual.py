@@ -23,10 +23,15 @@ from numpy.typing import NDArray
 from results_file import Row, print_rows, quick, wilson_interval, write_result
 from tqdm import tqdm
 
-from perception_node.camera_model import PinholeCamera
-from perception_node.mask_centroid import MaskCentroid
-from perception_node.perception import Perceived, Perception
-from perception_node.weights import DEFAULT_WEIGHTS, load_weights
+from perception_node import (
+    DEFAULT_WEIGHTS,
+    MaskCentroid,
+    Observation,
+    Perceived,
+    Perception,
+    PinholeCamera,
+    load_weights,
+)
 from scene_graph import GraphStatus, Relation, format_stacks, up_relations
 from sim_node.layouts import random_layout
 from sim_node.scene import CameraConfig, SceneConfig
@@ -128,14 +133,15 @@ def evaluate(
         for name, labels in variants.items():
             for method, perception in methods.items():
                 tally = tallies.setdefault((name, method), Tally())
+                observation = Observation(frame.rgb, labels, frame.depth, camera)
                 start = time.perf_counter()
-                perceived = perception.perceive(frame.rgb, labels, frame.depth, camera)
+                perceived = perception.perceive(observation)
                 tally.seconds.append(time.perf_counter() - start)
                 tally.add(perceived, truth, f"seed {seed} {format_stacks(layout)}")
                 if not name:
                     tally.position_errors += position_errors(world, perceived)
         tally = tallies.setdefault((GOAL_IMAGE, "G"), Tally())
-        perceived = methods["G"].perceive(frame.rgb, frame.labels, None, camera)
+        perceived = methods["G"].perceive(Observation(frame.rgb, frame.labels, None, camera))
         tally.add(perceived, truth, f"seed {seed} {format_stacks(layout)}")
     return tallies
 

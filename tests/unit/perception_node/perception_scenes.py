@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from perception_node.camera_model import PinholeCamera
-from perception_node.perception import PerceptionConfig
+from perception_node.camera import PinholeCamera
+from scene_graph import ROW_OF_THREE
 
 Array = NDArray[np.float64]
 
-PLACES = PerceptionConfig().stack_positions
+PLACES = ROW_OF_THREE
 
 
 def looking_camera(size: int = 256) -> PinholeCamera:

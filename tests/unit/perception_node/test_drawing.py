@@ -5,10 +5,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception_node.drawing import DRAWING_WIDTH, draw_scene_graph
+from perception_node.pipeline import Perceived
+from perception_node.segment import Segments
 from scene_graph import GraphStatus, Relation, SceneGraph, SceneObject
 
 
-def scene() -> tuple[NDArray[np.uint8], NDArray[np.uint16], SceneGraph]:
+def scene(
+    status: GraphStatus = GraphStatus.OCCLUDED, message: str = ""
+) -> tuple[NDArray[np.uint8], Perceived]:
     rgb, labels = np.full((256, 256, 3), 120, np.uint8), np.zeros((256, 256), np.uint16)
     labels[180:200, 200:220], labels[160:180, 200:220] = 3, 8
     graph = SceneGraph(
@@ -25,13 +29,13 @@ def scene() -> tuple[NDArray[np.uint8], NDArray[np.uint16], SceneGraph]:
         ),
         confidence=0.9,
     )
-    return rgb, labels, graph
+    return rgb, Perceived(graph, status, message, Segments.from_labels(labels))
 
 
 def test_blocks_and_names_are_drawn_and_the_input_is_left_alone() -> None:
-    rgb, labels, graph = scene()
+    rgb, perceived = scene(GraphStatus.CONFIDENT)
     before = rgb.copy()
-    drawing = draw_scene_graph(rgb, labels, graph, GraphStatus.CONFIDENT, "")
+    drawing = draw_scene_graph(rgb, perceived)
     assert drawing.shape == (DRAWING_WIDTH, DRAWING_WIDTH, 3) and drawing.dtype == np.uint8
     assert drawing.nbytes < 500_000  # Fast DDS drops larger best-effort messages
     assert np.array_equal(rgb, before)
@@ -42,9 +46,8 @@ def test_blocks_and_names_are_drawn_and_the_input_is_left_alone() -> None:
 
 
 def test_a_long_message_is_wrapped_into_the_image() -> None:
-    rgb, labels, graph = scene()
-    plain = draw_scene_graph(rgb, labels, graph, GraphStatus.OCCLUDED, "")
-    drawing = draw_scene_graph(rgb, labels, graph, GraphStatus.OCCLUDED, "hidden by something " * 8)
+    plain = draw_scene_graph(*scene())
+    drawing = draw_scene_graph(*scene(message="hidden by something " * 8))
     rows = np.flatnonzero((drawing != plain).any((1, 2)))
     assert rows[0] > 15 and np.ptp(rows) > 28
     columns = np.flatnonzero((drawing != plain).any((0, 2)))
@@ -52,6 +55,6 @@ def test_a_long_message_is_wrapped_into_the_image() -> None:
 
 
 def test_large_images_are_not_enlarged() -> None:
-    rgb, labels = np.zeros((480, 640, 3), np.uint8), np.zeros((480, 640), np.uint16)
-    empty = SceneGraph((), frozenset())
-    assert draw_scene_graph(rgb, labels, empty, GraphStatus.NO_OBJECTS, "none").shape == rgb.shape
+    rgb = np.zeros((480, 640, 3), np.uint8)
+    empty = Perceived(SceneGraph((), frozenset()), GraphStatus.NO_OBJECTS, "none")
+    assert draw_scene_graph(rgb, empty).shape == rgb.shape

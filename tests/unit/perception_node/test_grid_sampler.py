@@ -7,7 +7,11 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from perception_node.grid_sampler import pixels_from_coordinates, sample, translation_matrix
+from perception_node.visual_module.grid_sampler import (
+    pixels_from_coordinates,
+    sample,
+    translation_matrix,
+)
 
 SIZE = 128
 

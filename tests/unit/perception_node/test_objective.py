@@ -4,8 +4,8 @@
 import pytest
 import torch
 
-from perception_node.grid_sampler import sample
-from perception_node.objective import reconstruction_loss
+from perception_node.training.objective import reconstruction_loss
+from perception_node.visual_module.grid_sampler import sample
 
 
 def crop() -> torch.Tensor:

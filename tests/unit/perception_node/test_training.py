@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 import torch
 
-from perception_node.dataset import place_crops, read_crops, read_scenes
 from perception_node.errors import DatasetError, WeightsError
-from perception_node.masks import object_images
-from perception_node.train_visual import main
-from perception_node.training import Trainer, TrainingConfig
-from perception_node.weights import load_weights, read_metadata
+from perception_node.segment import Segments
+from perception_node.training.dataset import place_crops, read_crops, read_scenes
+from perception_node.training.train_visual import main
+from perception_node.training.trainer import Trainer, TrainingConfig
+from perception_node.visual_module.object_images import object_images
+from perception_node.visual_module.weights import load_weights, read_metadata
 from sim_node.data_sets import render_shard
 from sim_node.world import World
 
@@ -59,7 +60,9 @@ def test_crops_put_back_in_their_places_are_the_objects_images(folder: Path) -> 
     assert crops.scenes.tolist() == [0, 3, 6, 9]
     placed = place_crops(crops.pixels.float() / 255.0, crops.corners)
     scenes = list(read_scenes(folder))
-    images = np.concatenate([object_images(s.rgb, s.labels).images for s in scenes])
+    images = np.concatenate(
+        [object_images(s.rgb, Segments.from_labels(s.labels)).images for s in scenes]
+    )
     assert placed.numpy() == pytest.approx(images, abs=0.5 / 255 + 1e-6)
 
 
@@ -119,7 +122,7 @@ def test_the_command_trains_and_goes_on(
 
 
 def test_ctrl_c_stops_after_a_whole_step_and_saves(folder: Path, tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "perception_node.train_visual", "--data", str(folder)]
+    command = [sys.executable, "-m", "perception_node.training.train_visual", "--data", str(folder)]
     command += ["--run", str(tmp_path), "--threads", "1", "--no-bfloat16", "--steps", "100000"]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     assert process.stderr is not None

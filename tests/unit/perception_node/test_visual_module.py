@@ -7,10 +7,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from perception_node.mask_centroid import MaskCentroid
-from perception_node.masks import object_images
-from perception_node.visual_module import Coordinates, intersection_over_union
-from perception_node.weights import load_weights
+from perception_node.segment import Segments
+from perception_node.visual_module.coordinates import Coordinates, intersection_over_union
+from perception_node.visual_module.mask_centroid import MaskCentroid
+from perception_node.visual_module.object_images import ObjectImages, object_images
+from perception_node.visual_module.weights import load_weights
 
 MODULE = load_weights()
 COLORS = ((200, 30, 30), (40, 60, 200), (30, 140, 40), (220, 200, 30))
@@ -27,8 +28,12 @@ def scene_of(
     return rgb, labels
 
 
+def images_of(rgb: NDArray[np.uint8], labels: NDArray[np.uint16]) -> ObjectImages:
+    return object_images(rgb, Segments.from_labels(labels))
+
+
 def locate(corners: list[tuple[int, int]]) -> Coordinates:
-    return MODULE.locate(object_images(*scene_of(corners)))
+    return MODULE.locate(images_of(*scene_of(corners)))
 
 
 #: Nearer than 10 px to the picture's edge the network feels the zeros beyond it.
@@ -52,7 +57,7 @@ def test_corners_are_found_to_two_pixels(corners: list[tuple[int, int]]) -> None
     visible = [
         i for i, corner in enumerate(corners) if np.count_nonzero(labels == i + 1) == 24 * 24
     ]
-    located = MODULE.locate(object_images(rgb, labels))
+    located = MODULE.locate(images_of(rgb, labels))
     for index in visible:
         row = int(np.flatnonzero(found == index + 1)[0])
         assert located.corners[row] * 256 == pytest.approx(corners[index], abs=2.0)
@@ -83,7 +88,7 @@ def test_specks_far_away_draw_the_centroid_but_not_the_learnt_coordinates() -> N
     rgb, labels = scene_of([(40, 40)])
     specks = np.random.default_rng(0).random(labels.shape) < 0.01
     labels[specks] = 1
-    objects = object_images(rgb, labels)
+    objects = images_of(rgb, labels)
     learnt = MODULE.locate(objects).centres[0] * 256 - (corner + 12)
     centroid = MaskCentroid().locate(objects).centres[0] * 256 - (corner + 12)
     assert np.abs(learnt).max() < 4.0
@@ -93,7 +98,7 @@ def test_specks_far_away_draw_the_centroid_but_not_the_learnt_coordinates() -> N
 def test_images_of_other_sizes_are_scaled_into_the_bottom_left_corner() -> None:
     rgb, labels = np.zeros((120, 160, 3), np.uint8), np.zeros((120, 160), np.uint16)
     labels[100:120, 0:20], rgb[100:120, 0:20] = 1, 200  # touches the corner
-    objects = object_images(rgb, labels)
+    objects = images_of(rgb, labels)
     assert objects.coverage[0, -16:, :16] == pytest.approx(1.0)
     assert objects.coverage[0].sum() == pytest.approx(256.0)
     assert objects.coverage == pytest.approx(objects.default_coverage)

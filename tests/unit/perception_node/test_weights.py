@@ -9,10 +9,15 @@ import pytest
 import torch
 from safetensors.torch import save_file
 
-from perception_node.coordinate_regressor import BACKBONES
 from perception_node.errors import WeightsError
-from perception_node.visual_module import VisualModule
-from perception_node.weights import DEFAULT_WEIGHTS, load_weights, read_metadata, save_weights
+from perception_node.visual_module.coordinate_regressor import BACKBONES
+from perception_node.visual_module.visual_module import VisualModule
+from perception_node.visual_module.weights import (
+    DEFAULT_WEIGHTS,
+    load_weights,
+    read_metadata,
+    save_weights,
+)
 
 
 def test_the_weights_that_ship_are_small_and_say_how_they_were_made() -> None:

@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-import array
-from collections.abc import Iterable
+from typing import Final
 
 import numpy as np
 from geometry_msgs.msg import Point, Pose, Quaternion, TransformStamped, Vector3
@@ -14,13 +13,16 @@ from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_runtime.messages.scene_graph import graph_to_message
 from visualization_msgs.msg import Marker, MarkerArray
 
-from scene_graph import BOX, COLORS, CYLINDER, SPHERE, SceneGraph
+from scene_graph import BOX, COLORS, CYLINDER, SPHERE, SceneGraph, rotation_from_quaternion
 
-from .camera_model import PinholeCamera
+from .camera import PinholeCamera
 from .errors import BadImageError
-from .perception import Perceived
+from .pipeline import Perceived
 
-_MARKER_TYPES = {BOX: Marker.CUBE, CYLINDER: Marker.CYLINDER, SPHERE: Marker.SPHERE}
+#: How much longer or shorter than 1 the camera's quaternion may be.
+QUATERNION_TOLERANCE: Final = 2e-4
+
+_MARKER_TYPES: Final = {BOX: Marker.CUBE, CYLINDER: Marker.CYLINDER, SPHERE: Marker.SPHERE}
 
 
 def camera_from_messages(info: CameraInfo, extrinsics: TransformStamped) -> PinholeCamera:
@@ -28,8 +30,11 @@ def camera_from_messages(info: CameraInfo, extrinsics: TransformStamped) -> Pinh
     if any(abs(value) > 1e-9 for value in info.d):
         raise BadImageError("the image is distorted; publish a rectified image with d = 0")
     rotation, shift = extrinsics.transform.rotation, extrinsics.transform.translation
+    quaternion = (rotation.x, rotation.y, rotation.z, rotation.w)
+    if not abs(np.linalg.norm(quaternion) - 1.0) < QUATERNION_TOLERANCE:
+        raise BadImageError("camera/extrinsics does not hold a unit quaternion")
     pose = np.eye(4)
-    pose[:3, :3] = _rotation_matrix(rotation.x, rotation.y, rotation.z, rotation.w)
+    pose[:3, :3] = rotation_from_quaternion(quaternion)
     pose[:3, 3] = shift.x, shift.y, shift.z
     intrinsics = np.array(info.k, dtype=np.float64).reshape(3, 3)
     return PinholeCamera(intrinsics, pose, info.width, info.height)
@@ -38,6 +43,7 @@ def camera_from_messages(info: CameraInfo, extrinsics: TransformStamped) -> Pinh
 def perceived_to_message(
     perceived: Perceived, header: Header, processing_seconds: float
 ) -> SceneGraphMsg:
+    """The message; ``processing_seconds`` is how long it took from the image's arrival."""
     message = graph_to_message(perceived.graph, header)
     message.status = int(perceived.status)
     message.message = perceived.message
@@ -79,21 +85,3 @@ def markers_from_graph(graph: SceneGraph, header: Header) -> MarkerArray:
             )
         )
     return MarkerArray(markers=markers)
-
-
-def positions_from_parameter(values: Iterable[float]) -> tuple[tuple[float, float, float], ...]:
-    """x, y, z of the first place, of the second, …; raises ValueError for a broken triple."""
-    numbers = [float(value) for value in array.array("d", values)]
-    if len(numbers) % 3:
-        raise ValueError(f"needs x, y, z of each place, but has {len(numbers)} numbers")
-    return tuple((x, y, z) for x, y, z in zip(numbers[0::3], numbers[1::3], numbers[2::3]))
-
-
-def _rotation_matrix(x: float, y: float, z: float, w: float) -> np.ndarray:
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )

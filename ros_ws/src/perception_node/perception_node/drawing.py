@@ -9,7 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_graph import COLORS, GraphStatus, SceneGraph, base_index
+from scene_graph import COLORS, GraphStatus, base_index
+
+from .pipeline import Perceived
 
 #: Least width of the drawing [px]; smaller images are enlarged so that names can be read. At this
 #: size an image still fits the 512 kB of Fast DDS's shared memory.
@@ -22,25 +24,19 @@ _CONFIDENT: Final = (20, 130, 40)
 _DOUBT: Final = (200, 40, 30)
 
 
-def draw_scene_graph(
-    rgb: NDArray[np.uint8],
-    labels: NDArray[np.integer],
-    graph: SceneGraph,
-    status: GraphStatus,
-    message: str,
-) -> NDArray[np.uint8]:
+def draw_scene_graph(rgb: NDArray[np.uint8], perceived: Perceived) -> NDArray[np.uint8]:
     """The image with the graph drawn in, RGB, at least ``DRAWING_WIDTH`` wide.
 
     Args:
-        rgb, labels: of one size; labels as in the objects of ``graph``.
+        rgb: the image that was interpreted, shape (height, width, 3).
     """
+    graph, status = perceived.graph, perceived.status
     scale = max(1.0, DRAWING_WIDTH / rgb.shape[1])
     size = (round(rgb.shape[1] * scale), round(rgb.shape[0] * scale))
     canvas = cv2.resize(rgb, size, interpolation=cv2.INTER_NEAREST).astype(np.uint8)
+    masks = {segment.label: segment.mask for segment in perceived.segments or ()}
     boxes = {
-        item.name: _box(labels == item.label, scale)
-        for item in graph.objects
-        if item.label and bool((labels == item.label).any())
+        item.name: _box(masks[item.label], scale) for item in graph.objects if item.label in masks
     }
     for item in graph.objects:
         if item.name not in boxes:
@@ -58,7 +54,7 @@ def draw_scene_graph(
             _text(canvas, relation.object, ((left + right) // 2 - 22, bottom + 14))
     verdict = f"{status.name.replace('_', ' ').lower()}  {graph.confidence:.2f}"
     _text(canvas, verdict, (6, 14), _CONFIDENT if status is GraphStatus.CONFIDENT else _DOUBT)
-    for number, line in enumerate(_wrapped(message, size[0] // 7)):
+    for number, line in enumerate(_wrapped(perceived.message, size[0] // 7)):
         _text(canvas, line, (6, 30 + 14 * number), _DOUBT)
     return canvas
 

@@ -26,5 +26,9 @@ class ClusteringError(PerceptionError):
     """More clusters asked for than there are values, or values that are not numbers."""
 
 
+class PlacesError(PerceptionError):
+    """Stacks that cannot all stand on places."""
+
+
 class DatasetError(PerceptionError):
-    """A data set that is missing or not in the format of :mod:`perception_node.dataset`."""
+    """A data set that is missing or not as :mod:`perception_node.training.dataset` describes."""

@@ -13,4 +13,4 @@ def perception_node() -> int:
 
 def train_visual() -> int:
     """Entry point of ``ros2 run perception_node train_visual``."""
-    return run_module("perception_node.train_visual", "main", stopped=130)
+    return run_module("perception_node.training.train_visual", "main", stopped=130)

@@ -25,18 +25,15 @@ from visualization_msgs.msg import MarkerArray
 
 from scene_graph import GraphStatus
 
-from .camera_model import PinholeCamera
-from .conversions import (
-    camera_from_messages,
-    markers_from_graph,
-    perceived_to_message,
-)
+from .camera import PinholeCamera
+from .conversions import camera_from_messages, markers_from_graph, perceived_to_message
 from .drawing import draw_scene_graph
 from .errors import BadImageError
 from .frame_pairing import FramePairing, StampedSet
+from .observation import Observation
 from .parameters import PARAMETERS, config_from_parameters
-from .perception import Perceived, Perception
-from .weights import DEFAULT_WEIGHTS, load_weights
+from .pipeline import Perceived, Perception
+from .visual_module.weights import DEFAULT_WEIGHTS, load_weights
 
 #: Encodings of the images of a frame.
 ENCODINGS: Final = {"image": "rgb8", "depth": "32FC1", "segmentation": "16UC1"}
@@ -117,8 +114,7 @@ class PerceptionNode(Node):
 
     def _parameters_changed(self, values: dict[str, Any]) -> None:
         self._values = {**self._values, **values}
-        config = config_from_parameters(self._values)
-        self._perception = Perception(self._perception.module, config)
+        self._perception = self._perception.configured(config_from_parameters(self._values))
 
     def _on_extrinsics(self, message: TransformStamped) -> None:
         self._extrinsics = message
@@ -159,7 +155,7 @@ class PerceptionNode(Node):
             labels = array_from_image(request.segmentation, ENCODINGS["segmentation"])
             known = self._info is not None and self._extrinsics is not None
             camera = self._camera() if known else None
-            perceived = self._perception.perceive(rgb, labels, None, camera)
+            perceived = self._perception.perceive(Observation(rgb, labels, None, camera))
         except (ImageError, BadImageError) as error:
             perceived = self._perception.rejected(GraphStatus.BAD_IMAGE, str(error))
         response.scene_graph = perceived_to_message(perceived, header, time.perf_counter() - start)
@@ -171,12 +167,10 @@ class PerceptionNode(Node):
         messages = frame.messages
         self._info = messages["info"]
         header = Header(stamp=messages["image"].header.stamp, frame_id=self._frame_id())
-        picture = None
+        rgb = None
         try:
             rgb, depth, labels = (self._pixels(stream, messages[stream]) for stream in ENCODINGS)
-            if labels.shape == rgb.shape[:2]:
-                picture = rgb, labels
-            perceived = self._perception.perceive(rgb, labels, depth, self._camera())
+            perceived = self._perception.perceive(Observation(rgb, labels, depth, self._camera()))
         except (ImageError, BadImageError) as error:
             perceived = self._perception.rejected(GraphStatus.BAD_IMAGE, str(error))
         except Exception as error:  # a defect must neither stop the node nor go unseen
@@ -185,7 +179,7 @@ class PerceptionNode(Node):
                 GraphStatus.BAD_IMAGE,
                 f"internal error: {error!r}; please report the log of this node",
             )
-        self._publish(perceived, header, frame.arrival, picture)
+        self._publish(perceived, header, frame.arrival, rgb)
 
     def _pixels(self, stream: str, message: Image) -> Any:
         try:
@@ -204,7 +198,7 @@ class PerceptionNode(Node):
     def _frame_id(self) -> str:
         return self._extrinsics.header.frame_id if self._extrinsics else "world"
 
-    def _publish(self, perceived: Perceived, header: Header, arrival: float, picture: Any) -> None:
+    def _publish(self, perceived: Perceived, header: Header, arrival: float, rgb: Any) -> None:
         if not self.context.ok():
             return  # the node is being stopped
         seconds = time.perf_counter() - arrival
@@ -216,11 +210,8 @@ class PerceptionNode(Node):
                 self.get_logger().info("CONFIDENT: the scene is clear")
             else:
                 self.get_logger().warning(f"{perceived.status.name}: {perceived.message}")
-        if picture is not None and self._drawings.get_subscription_count():
-            rgb, labels = picture
-            drawing = draw_scene_graph(
-                rgb, labels, perceived.graph, perceived.status, perceived.message
-            )
+        if rgb is not None and self._drawings.get_subscription_count():
+            drawing = draw_scene_graph(rgb, perceived)
             self._drawings.publish(image_from_array(drawing, "rgb8", header))
         if self._markers.get_subscription_count():
             self._markers.publish(markers_from_graph(perceived.graph, header))

@@ -3,17 +3,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import itertools
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
 from tamp_runtime.parameters import ParameterSpec
 
-from .conversions import positions_from_parameter
-from .perception import PerceptionConfig
+from .config import PerceptionConfig
+from .places import Points
+
+#: Least distance between two places [m].
+MIN_GAP: Final = 0.02
 
 _DEFAULT: Final = PerceptionConfig()
+
+
+def positions_from_parameter(values: Iterable[float]) -> Points:
+    """x, y, z of the first place, of the second, …; raises ValueError for a broken triple."""
+    numbers = [float(value) for value in values]
+    if len(numbers) % 3:
+        raise ValueError(f"needs x, y, z of each place, but has {len(numbers)} numbers")
+    return tuple((x, y, z) for x, y, z in zip(numbers[0::3], numbers[1::3], numbers[2::3]))
 
 
 def _positions_problem(values: Any) -> str:
@@ -23,8 +36,9 @@ def _positions_problem(values: Any) -> str:
         return f"stack_positions {error}"
     if not np.isfinite(values).all():
         return "stack_positions must be finite"
-    gaps = np.linalg.norm(np.diff(np.array(positions).reshape(-1, 3), axis=0), axis=1)
-    return "" if (gaps > 0.02).all() else "stack_positions has places less than 2 cm apart"
+    if any(math.dist(a, b) <= MIN_GAP for a, b in itertools.combinations(positions, 2)):
+        return "stack_positions has places less than 2 cm apart"
+    return ""
 
 
 PARAMETERS: Final = (

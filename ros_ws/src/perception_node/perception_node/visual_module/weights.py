@@ -11,15 +11,16 @@ import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save_file
 
+from perception_node.errors import WeightsError
+
 from .coordinate_regressor import BACKBONES
-from .errors import WeightsError
-from .masks import IMAGE_SIZE
+from .object_images import IMAGE_SIZE
 from .visual_module import VisualModule
 
 #: Marks a file as ours, in its header.
 FORMAT: Final = "tamp visual module G, version 1"
 #: The weights that ship with the package.
-DEFAULT_WEIGHTS: Final = Path(__file__).parent / "weights" / "visual_module.safetensors"
+DEFAULT_WEIGHTS: Final = Path(__file__).parents[1] / "weights" / "visual_module.safetensors"
 
 _RETRAIN: Final = "train new ones with `make train-visual`, or leave the parameter at its default"
 

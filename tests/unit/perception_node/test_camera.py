@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from perception_scenes import looking_camera
 
-from perception_node.camera_model import PinholeCamera
+from perception_node.camera import PinholeCamera
 from perception_node.errors import BadImageError
 
 CAMERA = looking_camera()

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from perception_node.naming import color_names, mean_colors, unique_names
+from perception_node.names import color_names, mean_colors, unique_names
 from scene_graph import COLORS
 
 NAMES = tuple(COLORS)
@@ -19,21 +19,21 @@ def test_colours_are_named_under_any_light(
     chosen = order[:count]
     shade = light * np.random.default_rng(seed).uniform(0.95, 1.05, (count, 1))
     colors = np.clip(np.array([COLORS[name] for name in chosen]) * shade, 0.0, 1.0)
-    assert color_names(colors) == list(chosen)
+    assert color_names(colors) == tuple(chosen)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_single_colour_is_named_in_the_usual_light(name: str) -> None:
-    assert color_names(np.array([COLORS[name]]) * 0.8) == [name]
+    assert color_names(np.array([COLORS[name]]) * 0.8) == (name,)
 
 
 def test_an_orange_block_in_a_dim_scene_is_not_brown() -> None:
     scene = np.array([COLORS["orange"], COLORS["yellow"], COLORS["green"]]) * 0.6
-    assert color_names(scene) == ["orange", "yellow", "green"]
+    assert color_names(scene) == ("orange", "yellow", "green")
 
 
 def test_no_blocks_have_no_names() -> None:
-    assert color_names(np.zeros((0, 3))) == []
+    assert color_names(np.zeros((0, 3))) == ()
 
 
 def test_a_few_foreign_pixels_do_not_change_a_colour() -> None:
@@ -41,11 +41,11 @@ def test_a_few_foreign_pixels_do_not_change_a_colour() -> None:
     rgb[:] = (200, 20, 20)
     rgb[:3] = (255, 255, 255)
     colors = mean_colors(rgb, [np.ones((20, 20), bool)])
-    assert color_names(colors) == ["red"]
+    assert color_names(colors) == ("red",)
 
 
 def test_equal_blocks_are_numbered_from_the_left_and_the_bottom() -> None:
     names = unique_names(
         ["red", "blue", "red", "red"], ["box", "box", "box", "sphere"], [[2, 1], [], [3, 0]]
     )
-    assert names == ["red_box_2", "blue_box", "red_box", "red_sphere"]
+    assert names == ("red_box_2", "blue_box", "red_box", "red_sphere")

@@ -20,11 +20,12 @@ from typing import Any
 import torch
 from tqdm import tqdm
 
-from .coordinate_regressor import BACKBONES
+from perception_node.errors import PerceptionError
+from perception_node.visual_module.coordinate_regressor import BACKBONES
+from perception_node.visual_module.weights import DEFAULT_WEIGHTS, save_weights
+
 from .dataset import read_crops, shard_paths
-from .errors import PerceptionError
-from .training import Trainer, TrainingConfig, bfloat16_helps
-from .weights import DEFAULT_WEIGHTS, save_weights
+from .trainer import Trainer, TrainingConfig, bfloat16_helps
 
 CHECKPOINT = "checkpoint.pt"
 WEIGHTS = "visual_module.safetensors"

@@ -7,9 +7,11 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from perception_node.segment import largest_part
+
+from .coordinates import Coordinates, intersection_over_union
 from .grid_sampler import sample
-from .masks import ObjectImages, largest_part
-from .visual_module import Coordinates, intersection_over_union
+from .object_images import ObjectImages
 
 
 class MaskCentroid:

@@ -8,9 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from perception_node.clustering import cluster_on_line, within_cluster_cost
 from scene_graph import BOX, CYLINDER, SPHERE
-
-from .clustering import cluster_on_line, within_cluster_cost
 
 #: A box shows at most this many faces, each of one brightness.
 _FACES: Final = 3

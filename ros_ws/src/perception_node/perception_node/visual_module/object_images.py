@@ -1,22 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From scene image and segmentation to one image per object: u_i and u_i^def (5.2.1, A.2.6)."""
+"""From scene image and segments to one image per object: u_i and u_i^def (5.2.1, A.2.6)."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from perception_node.segment import Segments
+
 #: Side of the square images that the visual module works on [px] (5.2.1).
 IMAGE_SIZE: Final = 128
-#: Labels with fewer pixels than this part of the image are specks, not blocks.
-MIN_AREA: Final = 3e-4
-
-_CRACK: Final = np.ones((3, 3), np.uint8)
+Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -24,7 +23,6 @@ class ObjectImages:
     """What the visual module sees of the N objects of one scene.
 
     Attributes:
-        labels: instance labels, shape (N,), ascending.
         images: u_i, the scene with everything outside the object's mask zeroed, float32 in 0..1,
             shape (N, 3, size, size).
         coverage: how much of each pixel is the object, float32 in 0..1, shape (N, size, size).
@@ -33,7 +31,6 @@ class ObjectImages:
         crop_sizes: width and height of the object in ``default_images``, shape (N, 2) [px].
     """
 
-    labels: NDArray[np.intp]
     images: NDArray[np.float32]
     coverage: NDArray[np.float32]
     default_images: NDArray[np.float32]
@@ -41,69 +38,42 @@ class ObjectImages:
     crop_sizes: NDArray[np.intp]
 
     def __len__(self) -> int:
-        return len(self.labels)
-
-
-def object_labels(labels: NDArray[np.integer]) -> NDArray[np.intp]:
-    """Labels of everything larger than a speck, ascending, shape (N,)."""
-    counts = np.bincount(labels.ravel())
-    counts[0] = 0
-    return np.flatnonzero(counts >= max(1.0, MIN_AREA * labels.size))
-
-
-def largest_part(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The mask without detached specks: its largest part, after one-pixel cracks are bridged.
-
-    The same array where there is nothing to leave out.
-    """
-    rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))
-    if len(rows) == 0:
-        return mask
-    box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-    closed = cv2.morphologyEx(mask[box].astype(np.uint8), cv2.MORPH_CLOSE, _CRACK)
-    count, parts, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8)
-    if count <= 2:
-        return mask
-    largest = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
-    part = np.zeros_like(mask)
-    part[box] = mask[box] & (parts == largest)
-    return part
+        return len(self.images)
 
 
 def object_images(
-    rgb: NDArray[np.uint8], labels: NDArray[np.integer], size: int = IMAGE_SIZE
+    rgb: NDArray[np.uint8], segments: Segments, size: int = IMAGE_SIZE
 ) -> ObjectImages:
-    """Splits a scene image into N images with one object each.
+    """Splits a scene image into N images with one object each, in the order of the segments.
 
     The scene is scaled to fit a square of ``size``, in its bottom-left corner: the origin of φ.
     The default crop holds the largest connected part of the mask only.
 
     Args:
         rgb: shape (height, width, 3).
-        labels: instance labels, 0 = none, shape (height, width).
+        segments: the objects' masks, shape (height, width).
         size: side of the images [px].
     """
-    found = object_labels(labels)
-    rgb, labels, source, target = _aligned(rgb, labels, size)
-    images = np.zeros((len(found), 3, size, size), np.float32)
-    coverage = np.zeros((len(found), size, size), np.float32)
+    count = len(segments)
+    source, target = _block_sides(rgb, size)
+    rgb = _whole_blocks(rgb, source)
+    images = np.zeros((count, 3, size, size), np.float32)
+    coverage = np.zeros((count, size, size), np.float32)
     default_images, default_coverage = np.zeros_like(images), np.zeros_like(coverage)
-    crop_sizes = np.zeros((len(found), 2), np.intp)
-    for index, label in enumerate(found):
-        mask = labels == label
-        top, bottom = _block_range(mask.any(1), source)
-        left, right = _block_range(mask.any(0), source)
+    crop_sizes = np.zeros((count, 2), np.intp)
+    for index, segment in enumerate(segments):
+        mask = _whole_blocks(segment.mask, source)
+        top, bottom = _block_range(np.any(mask, axis=1), source)
+        left, right = _block_range(np.any(mask, axis=0), source)
         crop = np.s_[top * source : bottom * source, left * source : right * source]
-        mask, pixels = mask[crop], rgb[crop]
         scaled_size = ((right - left) * target, (bottom - top) * target)
-        image, part = _scaled(pixels, mask, scaled_size)
+        image, part = _scaled(rgb[crop], mask[crop], scaled_size)
         # Rows count from the lower edge, the origin of φ.
-        low = size - (len(labels) // source - bottom) * target
+        low = size - (len(rgb) // source - bottom) * target
         box = np.s_[low - scaled_size[1] : low, left * target : left * target + scaled_size[0]]
         images[(index, slice(None), *box)], coverage[index][box] = image.transpose(2, 0, 1), part
-        clean = largest_part(mask)
-        if clean is not mask:
-            image, part = _scaled(pixels, clean, scaled_size)
+        if segment.part is not segment.mask:
+            image, part = _scaled(rgb[crop], _whole_blocks(segment.part, source)[crop], scaled_size)
         rows, columns = np.flatnonzero(part.any(1)), np.flatnonzero(part.any(0))
         width, height = columns[-1] - columns[0] + 1, rows[-1] - rows[0] + 1
         tight = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
@@ -111,7 +81,6 @@ def object_images(
         default_coverage[index, size - height :, :width] = part[tight]
         crop_sizes[index] = width, height
     return ObjectImages(
-        labels=found,
         images=images,
         coverage=coverage,
         default_images=default_images,
@@ -120,35 +89,36 @@ def object_images(
     )
 
 
-def _aligned(
-    rgb: NDArray[np.uint8], labels: NDArray[np.integer], size: int
-) -> tuple[NDArray[np.uint8], NDArray[np.integer], int, int]:
-    """Image and labels padded (above, right) to whole blocks, and the sides of a block.
+def _block_sides(rgb: NDArray[np.uint8], size: int) -> tuple[int, int]:
+    """Sides of a block before and after scaling [px].
 
     Scaling the longer side to ``size`` turns each block of ``source`` pixels into ``target``
     pixels, so parts of the image along block borders can be scaled on their own.
 
     Returns:
-        rgb, labels, source, target.
+        source, target.
     """
-    height, width = labels.shape
-    common = math.gcd(max(height, width), size)
-    source, target = max(height, width) // common, size // common
-    above, right = -height % source, -width % source
-    if above or right:
-        rgb = np.pad(rgb, ((above, 0), (0, right), (0, 0)))
-        labels = np.pad(labels, ((above, 0), (0, right)))
-    return rgb, labels, source, target
+    longer = max(rgb.shape[:2])
+    common = math.gcd(longer, size)
+    return longer // common, size // common
 
 
-def _block_range(used: NDArray[np.bool_], source: int) -> tuple[int, int]:
+def _whole_blocks(image: NDArray[Any], source: int) -> NDArray[Any]:
+    """The image padded with zeros, above and right, to whole blocks; itself if it has them."""
+    above, right = -image.shape[0] % source, -image.shape[1] % source
+    if not (above or right):
+        return image
+    return np.pad(image, ((above, 0), (0, right), *((0, 0),) * (image.ndim - 2)))
+
+
+def _block_range(used: Mask, source: int) -> tuple[int, int]:
     """First block with a pixel of the object, and the one after the last."""
     pixels = np.flatnonzero(used)
     return int(pixels[0]) // source, int(pixels[-1]) // source + 1
 
 
 def _scaled(
-    rgb: NDArray[np.uint8], mask: NDArray[np.bool_], size: tuple[int, int]
+    rgb: NDArray[np.uint8], mask: Mask, size: tuple[int, int]
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Masked image and coverage in 0..1, scaled by area to (width, height)."""
     masked = cv2.bitwise_and(rgb, rgb, mask=mask.astype(np.uint8)).astype(np.float32)

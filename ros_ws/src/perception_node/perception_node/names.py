@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import cv2
@@ -11,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scene_graph import COLORS, object_name
+
+from .segment import Segments
 
 Array = NDArray[np.float64]
 
@@ -22,6 +25,35 @@ _OWN_SHADE_COST: Final = 1600.0
 #: Cost of a scene's shade that differs from the usual one, per squared logarithm [ΔE²].
 _SCENE_SHADE_COST: Final = 100.0
 _USUAL_SHADE: Final = 0.8
+
+
+@dataclass(frozen=True)
+class Names:
+    """What the N blocks of a scene are called, in the order of their segments.
+
+    Attributes:
+        colors: names of ``scene_graph.COLORS``.
+        names: unique.
+    """
+
+    colors: tuple[str, ...]
+    names: tuple[str, ...]
+
+
+def name_blocks(
+    rgb: NDArray[np.uint8],
+    segments: Segments,
+    shapes: Sequence[str],
+    stacks: Sequence[Sequence[int]],
+) -> Names:
+    """Names every block by its colour and shape.
+
+    Args:
+        rgb: shape (height, width, 3).
+        shapes, stacks: see :func:`unique_names`.
+    """
+    colors = color_names(mean_colors(rgb, [segment.part for segment in segments]))
+    return Names(colors, unique_names(colors, shapes, stacks))
 
 
 def mean_colors(rgb: NDArray[np.uint8], masks: Sequence[NDArray[np.bool_]]) -> Array:
@@ -38,7 +70,7 @@ def mean_colors(rgb: NDArray[np.uint8], masks: Sequence[NDArray[np.bool_]]) -> A
     return np.array(medians).reshape(-1, 3) / 255.0
 
 
-def color_names(colors: Array) -> list[str]:
+def color_names(colors: Array) -> tuple[str, ...]:
     """The nearest name of ``scene_graph.COLORS`` for each colour, in CIE Lab, whatever the light.
 
     Light and shade scale a colour, which alone would turn orange into brown. The blocks of a scene
@@ -49,7 +81,7 @@ def color_names(colors: Array) -> list[str]:
         colors: sRGB in 0..1, shape (N, 3).
     """
     if len(colors) == 0:
-        return []
+        return ()
     palette = np.array([COLORS[name] for name in _NAMES])
     shaded = np.clip(palette[None] * _SHADES[:, None, None], 0.0, 1.0)
     difference = _lab(shaded)[None] - _lab(colors)[:, None, None]
@@ -59,7 +91,7 @@ def color_names(colors: Array) -> list[str]:
     cost = (distance[:, :, None] + _OWN_SHADE_COST * (ratio**2)[None, :, :, None]).min(axis=1)
     scene = cost.min(axis=2).sum(axis=0) + _SCENE_SHADE_COST * np.log(_SHADES / _USUAL_SHADE) ** 2
     best = cost[:, int(scene.argmin())].argmin(axis=1)
-    return [_NAMES[index] for index in best]
+    return tuple(_NAMES[index] for index in best)
 
 
 def _lab(rgb: Array) -> Array:
@@ -70,7 +102,7 @@ def _lab(rgb: Array) -> Array:
 
 def unique_names(
     colors: Sequence[str], shapes: Sequence[str], stacks: Sequence[Sequence[int]]
-) -> list[str]:
+) -> tuple[str, ...]:
     """``color_shape`` for each object; equal ones are numbered from the left and the bottom.
 
     Args:
@@ -84,4 +116,4 @@ def unique_names(
             name = object_name(colors[index], shapes[index])
             seen[name] = seen.get(name, 0) + 1
             names[index] = name if seen[name] == 1 else f"{name}_{seen[name]}"
-    return names
+    return tuple(names)

@@ -3,38 +3,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor, nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from .coordinate_regressor import DEFAULT_BACKBONE, make_regressor
+from .coordinates import Coordinates, intersection_over_union
 from .grid_sampler import pixels_from_coordinates, sample
-from .masks import ObjectImages
+from .object_images import ObjectImages
 
 #: Factor of the matrix α; 2 lets φ in 0..1 reach the whole image, where the thesis has 1.6.
 TRANSLATION_FACTOR: Final = 2.0
-
-
-@dataclass(frozen=True)
-class Coordinates:
-    """What G says about the N objects of a scene.
-
-    Attributes:
-        phi: φ = (a, b), shape (N, 2), in 0..1 from the bottom-left corner.
-        corners: bottom-left corners of the objects, as parts of the image's side, shape (N, 2).
-        centres: centres of the objects' boxes, in the same unit, shape (N, 2).
-        iou: IoU(u_i, ũ_i) of A.2.5, shape (N,), in 0..1.
-    """
-
-    phi: NDArray[np.float64]
-    corners: NDArray[np.float64]
-    centres: NDArray[np.float64]
-    iou: NDArray[np.float64]
 
 
 class VisualModule(nn.Module):
@@ -90,24 +72,6 @@ class VisualModule(nn.Module):
             centres=corners + 0.5 * objects.crop_sizes / size,
             iou=intersection_over_union(objects.coverage, reconstructed[:, 0].numpy()),
         )
-
-
-def intersection_over_union(
-    first: NDArray[np.floating], second: NDArray[np.floating]
-) -> NDArray[np.float64]:
-    """IoU of soft masks in 0..1: Σ min / Σ max over the pixels; 0 where both are empty.
-
-    For masks of zeros and ones this is the usual definition.
-
-    Args:
-        first, second: shape (n, height, width).
-
-    Returns:
-        Shape (n,), in 0..1.
-    """
-    axes = (-2, -1)
-    union = np.maximum(first, second).sum(axes, dtype=np.float64)
-    return np.minimum(first, second).sum(axes, dtype=np.float64) / np.maximum(union, 1e-9)
 
 
 def _fold_normalisation(block: nn.Sequential) -> None:

@@ -14,9 +14,9 @@ from typing import Final
 
 import numpy as np
 
-from scene_graph import BOX
+from scene_graph import BOX, BlockPose
 
-from .block_surface import BlockSurface, Interval, block_frame
+from .surface import BlockSurface, Interval, block_frame
 
 #: How much intervals may miss one another and still be taken to agree [m]: with exact depth and
 #: calibration, and else.
@@ -24,44 +24,25 @@ AGREEMENT: Final = (0.0006, 0.002)
 
 
 @dataclass(frozen=True)
-class BlockPose:
-    """Pose and size of one block in world.
+class MeasuredBlock:
+    """One block as measured.
 
     Attributes:
         shape: ``box``, ``cylinder`` or ``sphere``.
-        position_world: centre, (x, y, z) [m].
-        yaw: about world z, -π/4 to π/4 [rad]; a box looks the same after a quarter turn.
-        size: full extents along the block's axes [m].
-        tilt: see :class:`BlockSurface`.
+        pose: in world; its yaw is in -π/4..π/4, as a box looks the same after a quarter turn.
+        tilt: see :class:`BlockSurface` [rad].
     """
 
     shape: str
-    position_world: tuple[float, float, float]
-    yaw: float
-    size: tuple[float, float, float]
-    tilt: float
-
-    @property
-    def quaternion_world(self) -> tuple[float, float, float, float]:
-        """(x, y, z, w) of the turn by ``yaw`` about z."""
-        return 0.0, 0.0, float(np.sin(0.5 * self.yaw)), float(np.cos(0.5 * self.yaw))
-
-    @property
-    def bottom(self) -> float:
-        """z of the lower end [m]."""
-        return self.position_world[2] - 0.5 * self.size[2]
-
-    @property
-    def top(self) -> float:
-        """z of the upper end [m]."""
-        return self.position_world[2] + 0.5 * self.size[2]
+    pose: BlockPose
+    tilt: float = 0.0
 
 
-def block_poses(
+def pose_blocks(
     surfaces: Sequence[BlockSurface],
     stacks: Sequence[Sequence[int]],
     table_heights: Sequence[float],
-) -> list[BlockPose]:
+) -> tuple[MeasuredBlock, ...]:
     """Joins the measurements of a scene.
 
     Args:
@@ -78,13 +59,13 @@ def block_poses(
     cube = _agreed([*widths, *(Interval(h - AGREEMENT[0], h + AGREEMENT[0]) for h in heights)])
     # If they are cubes, as far as anyone can tell: heights are known better than widths.
     common = _agreed(widths) if cube is None else float(np.median(heights))
-    return [
-        _pose(surface, *vertical[index], widths[index].middle if common is None else common)
+    return tuple(
+        _posed(surface, *vertical[index], widths[index].middle if common is None else common)
         for index, surface in enumerate(surfaces)
-    ]
+    )
 
 
-def _pose(surface: BlockSurface, bottom: float, top: float, width: float) -> BlockPose:
+def _posed(surface: BlockSurface, bottom: float, top: float, width: float) -> MeasuredBlock:
     half = 0.5 * width
     y = _overlap(
         Interval(surface.left.low + half, surface.left.high + half),
@@ -94,12 +75,14 @@ def _pose(surface: BlockSurface, bottom: float, top: float, width: float) -> Blo
     local = np.array([surface.front - half, y, 0.5 * (bottom + top)])
     position = block_frame(surface.yaw) @ local
     yaw = surface.yaw - np.round(surface.yaw / (np.pi / 2)) * (np.pi / 2)
-    return BlockPose(
-        shape=surface.shape,
-        position_world=(float(position[0]), float(position[1]), float(position[2])),
-        yaw=float(yaw) if surface.shape == BOX else 0.0,
-        size=(width, width, top - bottom),
-        tilt=surface.tilt,
+    return MeasuredBlock(
+        surface.shape,
+        BlockPose(
+            position_world=(float(position[0]), float(position[1]), float(position[2])),
+            yaw=float(yaw) if surface.shape == BOX else 0.0,
+            size=(width, width, top - bottom),
+        ),
+        surface.tilt,
     )
 
 

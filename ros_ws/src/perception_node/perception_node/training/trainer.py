@@ -12,14 +12,15 @@ from typing import Any
 import torch
 from torch import Tensor
 
+from perception_node.errors import WeightsError
+from perception_node.visual_module.coordinate_regressor import DEFAULT_BACKBONE
+from perception_node.visual_module.grid_sampler import sample
+from perception_node.visual_module.object_images import IMAGE_SIZE
+from perception_node.visual_module.visual_module import TRANSLATION_FACTOR, VisualModule
+
 from .augmentation import damaged, recolored, speckled
-from .coordinate_regressor import DEFAULT_BACKBONE
 from .dataset import ObjectCrops, place_crops
-from .errors import WeightsError
-from .grid_sampler import sample
-from .masks import IMAGE_SIZE
 from .objective import reconstruction_loss
-from .visual_module import TRANSLATION_FACTOR, VisualModule
 
 
 @dataclass(frozen=True)
@@ -145,6 +146,7 @@ class Trainer:
         partial.replace(path)
 
     def state(self) -> dict[str, Any]:
+        """Everything that :meth:`resume` needs, as :func:`torch.save` takes it."""
         return {
             "config": asdict(self.config),
             "step": self.step,

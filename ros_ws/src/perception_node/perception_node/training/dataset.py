@@ -29,8 +29,9 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from .errors import DatasetError
-from .masks import IMAGE_SIZE, object_images
+from perception_node.errors import DatasetError
+from perception_node.segment import Segments
+from perception_node.visual_module.object_images import IMAGE_SIZE, object_images
 
 #: Crops are kept in squares of this side [px]; objects larger than that are not trained on.
 CROP_SIZE: Final = 32
@@ -106,7 +107,7 @@ def read_crops(folder: Path, on_shard: Callable[[], object] = lambda: None) -> O
     for path in shard_paths(folder):
         arrays = _read_shard(path, ("rgb", "labels"))
         for rgb, labels in zip(arrays["rgb"], arrays["labels"]):
-            objects = object_images(rgb, labels)
+            objects = object_images(rgb, Segments.from_labels(labels))
             fits = np.flatnonzero(objects.crop_sizes.max(axis=1) <= CROP_SIZE)
             pixels.append(objects.default_images[fits, :, -CROP_SIZE:, :CROP_SIZE])
             sizes.append(objects.crop_sizes[fits])

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""All blocks of a scene: measured by depth, or with the shape of their outline only."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from perception_node.observation import Observation
+from perception_node.places import Standing
+from perception_node.segment import Segments
+from scene_graph import BlockPose
+
+from .measure import measure_blocks
+from .outline import shape_from_outline
+from .pose import MeasuredBlock, pose_blocks
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """What is known of the N blocks of a scene, in the order of their segments.
+
+    Attributes:
+        shapes: ``box``, ``cylinder`` or ``sphere`` for each.
+        measured: all of them, or none where depth or camera are missing.
+    """
+
+    shapes: tuple[str, ...]
+    measured: tuple[MeasuredBlock, ...] = ()
+
+    @property
+    def poses(self) -> tuple[BlockPose | None, ...]:
+        """For each block its pose in world, None where it was not measured."""
+        if self.measured:
+            return tuple(block.pose for block in self.measured)
+        return (None,) * len(self.shapes)
+
+
+def find_blocks(observation: Observation, segments: Segments, standing: Standing) -> Blocks:
+    """Measures and poses the blocks; without depth or camera, only their shapes are told.
+
+    Raises:
+        BadImageError: if too little depth of a block is known.
+    """
+    depth, camera = observation.depth, observation.camera
+    if depth is None or camera is None:
+        shapes = tuple(shape_from_outline(observation.rgb, segment.part) for segment in segments)
+        return Blocks(shapes)
+    surfaces = measure_blocks(segments, depth, camera)
+    measured = pose_blocks(surfaces, standing.stacks, standing.table_heights)
+    return Blocks(tuple(block.shape for block in measured), measured)

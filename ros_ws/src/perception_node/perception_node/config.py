@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What perception knows of the scene beforehand, and what it accepts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from scene_graph import ROW_OF_THREE
+
+from .places import Points
+
+
+@dataclass(frozen=True)
+class StabilityLimits:
+    """What still counts as standing.
+
+    Attributes:
+        place_tolerance: horizontal distance of the lowest block from its place's centre [m].
+        gap: height between a block and what it stands on [m].
+        tilt: angle of a block's front from the vertical [rad].
+        overhang: horizontal distance between the centres of a block and the one below, as part of
+            the block's width; at one half the upper one falls.
+    """
+
+    place_tolerance: float = 0.03
+    gap: float = 0.008
+    tilt: float = 0.14
+    overhang: float = 0.45
+
+
+@dataclass(frozen=True)
+class PerceptionConfig:
+    """What perception knows of the scene, and what it accepts.
+
+    Attributes:
+        stack_positions: centres of the m places on the table, from the left of the image [m]; none
+            where the places are unknown, which leaves left-relations instead of bases.
+        min_confidence: least confidence of a confident graph (A.2.5).
+        max_hidden: greatest hidden share of the column over a place.
+        column_half_width, column_height: of the columns in which blocks can stand [m].
+        limits: what counts as standing.
+    """
+
+    stack_positions: Points = ROW_OF_THREE
+    min_confidence: float = 0.6
+    max_hidden: float = 0.005
+    column_half_width: float = 0.035
+    column_height: float = 0.36
+    limits: StabilityLimits = field(default_factory=StabilityLimits)

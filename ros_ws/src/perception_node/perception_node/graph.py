@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From what was found out about the blocks of a picture to its scene graph (3.2, A.2.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from scene_graph import (
+    BlockPose,
+    Relation,
+    SceneGraph,
+    SceneObject,
+    Stacks,
+    base_index,
+    left_relations,
+    up_relations,
+)
+
+from .blocks import Blocks
+from .names import Names
+from .observation import Observation
+from .places import Standing
+from .places.occlusion import Occlusion
+from .segment import Segments
+from .visual_module.coordinates import Coordinates
+
+
+def build_graph(
+    observation: Observation,
+    segments: Segments,
+    occlusion: Occlusion,
+    coordinates: Coordinates,
+    standing: Standing,
+    blocks: Blocks,
+    names: Names,
+) -> SceneGraph:
+    """The scene graph of N blocks, at least one; objects are sorted by name.
+
+    The confidence of a block is its IoU (A.2.5) times the visible share of its outline; that of
+    the graph is the least of them, lowered by the hidden share of the places.
+    """
+    confidence = coordinates.iou * occlusion.visible_shares(blocks.poses, observation.camera)
+    objects = []
+    for index, (segment, pose) in enumerate(zip(segments, blocks.poses)):
+        a, b = coordinates.phi[index]
+        item = SceneObject(
+            name=names.names[index],
+            color=names.colors[index],
+            shape=blocks.shapes[index],
+            label=segment.label,
+            coordinates=(float(a), float(b)),
+            confidence=float(confidence[index]),
+        )
+        objects.append(item if pose is None else _posed(item, pose))
+    return SceneGraph(
+        objects=tuple(sorted(objects, key=lambda item: item.name)),
+        relations=_relations(names.names, standing),
+        places=standing.places,
+        confidence=float(confidence.min()) * (1.0 - occlusion.greatest),
+    )
+
+
+def _posed(item: SceneObject, pose: BlockPose) -> SceneObject:
+    return replace(
+        item,
+        position_world=pose.position_world,
+        quaternion_world=pose.quaternion_world,
+        size=pose.size,
+    )
+
+
+def _relations(names: Sequence[str], standing: Standing) -> frozenset[Relation]:
+    """Up-relations with bases where the places are known, else up- and left-relations (A.2.2)."""
+    stacks: Stacks = tuple(tuple(names[i] for i in stack) for stack in standing.stacks)
+    relations = up_relations(stacks)
+    if standing.places:
+        return relations
+    on_blocks = {item for item in relations if base_index(item.object) is None}
+    return frozenset(on_blocks) | left_relations(stacks)

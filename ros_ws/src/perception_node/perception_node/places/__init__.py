@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Places: which stack stands where, and what hides them.
+
+:mod:`.row` holds everything that is assumed of places in a row; another arrangement is another
+:class:`Places`, given to a perception by ``Perception(locator, places=…)``.
+"""
+
+from .row import RowOfPlaces
+from .standing import Places, Points, Standing
+
+__all__ = ["Places", "Points", "RowOfPlaces", "Standing"]

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whether something that is not a block hides part of the places."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from perception_node.camera import PinholeCamera
+from perception_node.config import PerceptionConfig
+from perception_node.observation import Observation
+from perception_node.segment import Segments
+from scene_graph import BlockPose
+
+from .standing import Places
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+#: Things lower than this above the table hide nothing: shadows, the table itself [m].
+MIN_HEIGHT: Final = 0.01
+
+
+@dataclass(frozen=True)
+class Columns:
+    """The upright columns of space over the places, in which blocks can stand.
+
+    Attributes:
+        places: where they stand; at least one.
+        half_width: half the side of a column [m].
+        height: of a column: the highest tower [m].
+    """
+
+    places: Places
+    half_width: float
+    height: float
+
+    def regions(self, camera: PinholeCamera) -> list[Mask]:
+        """For each column the pixels behind which it may be, shape (height, width)."""
+        size = (2.0 * self.half_width, 2.0 * self.half_width, self.height)
+        return [
+            box_region(camera, BlockPose((x, y, z + 0.5 * self.height), 0.0, size))
+            for x, y, z in self._feet()
+        ]
+
+    def greatest_depth(self, camera: PinholeCamera) -> float:
+        """Depth along the optical axis that no point of the columns exceeds [m]."""
+        forward = camera.world_from_optical[:3, 2]
+        feet = (self._feet() - camera.position_world) @ forward
+        aside = self.half_width * (abs(forward[0]) + abs(forward[1]))
+        return float(feet.max() + aside + max(self.height * forward[2], 0.0))
+
+    def hidden_by(self, points_world: Array, camera: PinholeCamera) -> Mask:
+        """Whether points, shape (..., 3) [m], are among the columns or between them and the camera.
+
+        NaN hides nothing.
+        """
+        with np.errstate(invalid="ignore"):
+            above = points_world[..., 2] > self._feet()[:, 2].min() + MIN_HEIGHT
+        return self.places.in_front(points_world, camera, self.half_width) & above
+
+    def _feet(self) -> Array:
+        return np.array([place.position_world for place in self.places.places], dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class Occlusion:
+    """What is hidden by things that are not blocks.
+
+    Attributes:
+        hidden: pixels where such a thing is in front of or among the places, shape (height, width);
+            None where that cannot be known.
+        shares: the hidden share of the column over each place, 0..1; empty where it is not known.
+    """
+
+    hidden: Mask | None = None
+    shares: tuple[float, ...] = ()
+
+    @property
+    def greatest(self) -> float:
+        """The largest of the shares, 0 where none is known."""
+        return max(self.shares, default=0.0)
+
+    def visible_shares(
+        self, poses: Sequence[BlockPose | None], camera: PinholeCamera | None
+    ) -> Array:
+        """How much of each block's outline is not hidden, shape (N,), 0..1; 1 without a pose."""
+        if self.hidden is None or camera is None or not self.hidden.any():
+            return np.ones(len(poses))
+        return np.array(
+            [
+                1.0 if pose is None else 1.0 - _share(self.hidden, box_region(camera, pose))
+                for pose in poses
+            ]
+        )
+
+
+def find_occlusion(
+    observation: Observation, segments: Segments, places: Places, config: PerceptionConfig
+) -> Occlusion:
+    """What hides the columns over the places; nothing is known without depth, camera or places."""
+    depth, camera = observation.depth, observation.camera
+    if depth is None or camera is None or not places.places:
+        return Occlusion()
+    columns = Columns(places, config.column_half_width, config.column_height)
+    regions = columns.regions(camera)
+    # What is deeper than every column is behind them: most of the image, without any geometry.
+    with np.errstate(invalid="ignore"):
+        near = (depth > 0) & (depth < columns.greatest_depth(camera))
+    unlabelled = segments.label_image == 0
+    rows, across = np.nonzero(np.logical_or.reduce(regions) & unlabelled & near)
+    rays = camera.rays_world(np.stack([across, rows], axis=-1))
+    points = camera.position_world + rays * depth[rows, across, None]
+    hidden = np.zeros(depth.shape, bool)
+    hides = columns.hidden_by(points, camera)
+    hidden[rows[hides], across[hides]] = True
+    return Occlusion(hidden, tuple(_share(hidden, region) for region in regions))
+
+
+def box_region(camera: PinholeCamera, box: BlockPose) -> Mask:
+    """Pixels behind which an upright box may be; none if part of it is behind the camera.
+
+    Returns:
+        Shape (height, width).
+    """
+    corners = np.array([[i, j, k] for i in (-0.5, 0.5) for j in (-0.5, 0.5) for k in (-0.5, 0.5)])
+    corners = corners * box.size
+    c, s = np.cos(box.yaw), np.sin(box.yaw)
+    corners = corners @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) + box.position_world
+    region = np.zeros((camera.height, camera.width), np.uint8)
+    pixels = camera.project(corners)
+    if np.isfinite(pixels).all():
+        hull = cv2.convexHull(np.round(np.clip(pixels, -1e6, 1e6)).astype(np.int32))
+        cv2.fillConvexPoly(region, hull, 1)
+    return region.astype(bool)
+
+
+def _share(hidden: Mask, region: Mask) -> float:
+    return int(np.count_nonzero(hidden & region)) / max(1, int(np.count_nonzero(region)))

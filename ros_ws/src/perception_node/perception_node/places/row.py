@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Everything that is assumed of places in a row, seen from the front (5.2.1, A.2.2, A.2.4).
+
+Stacks stand side by side in the image, in the order of their places: so they can be counted on the
+outline of the masks, grouped by horizontal coordinate alone, and assigned to places in order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from perception_node.camera import PinholeCamera
+from perception_node.clustering import cluster_on_line
+from perception_node.errors import BadImageError, PlacesError
+from perception_node.observation import Observation
+from perception_node.segment import Segments
+from perception_node.visual_module.coordinates import Coordinates
+from scene_graph import ROW_OF_THREE, Place
+
+from .standing import Points, Standing
+
+#: Gaps and runs narrower than this part of the image's width are noise of the mask.
+NOISE_WIDTH: Final = 0.016
+#: A count must hold on this part of the image's rows, in a row or not.
+NOISE_ROWS: Final = 0.016
+
+
+class RowOfPlaces:
+    """Places side by side on the table.
+
+    Attributes:
+        places: from the left of the image; none where they are unknown.
+    """
+
+    def __init__(self, positions_world: Points = ROW_OF_THREE) -> None:
+        self.places = tuple(Place(i, position) for i, position in enumerate(positions_world))
+
+    def stand(
+        self, observation: Observation, segments: Segments, coordinates: Coordinates
+    ) -> Standing:
+        """The stacks by horizontal coordinate, each by vertical coordinate, and their places.
+
+        Raises:
+            BadImageError: if the camera does not see the places in order from the left.
+        """
+        count = min(count_stacks(segments.union()), len(segments))
+        stacks = stacks_from_coordinates(coordinates.corners, count)
+        if observation.camera is None or not self.places:
+            return self._without_places(stacks)
+        try:
+            seen = [float(coordinates.centres[stack[0], 0]) for stack in stacks]
+            assigned = assign_places(seen, self._columns(observation.camera))
+        except PlacesError as error:
+            return self._without_places(stacks, str(error))
+        return Standing(
+            with_empty_places(stacks, assigned, len(self.places)),
+            tuple(place.position_world[2] for place in self.places),
+            self.places,
+        )
+
+    def in_front(
+        self, points_world: NDArray[np.float64], camera: PinholeCamera, margin: float
+    ) -> NDArray[np.bool_]:
+        """Whether points are inside the slab along the row, or between it and the camera."""
+        ground = self._positions()[:, :2]
+        toward = camera.position_world[:2] - ground.mean(0)
+        if len(ground) > 1:
+            row = ground[-1] - ground[0]
+            toward = toward - row * (toward @ row) / (row @ row)
+        toward = toward / np.linalg.norm(toward)
+        back = (ground @ toward).min() - margin
+        with np.errstate(invalid="ignore"):
+            return points_world[..., :2] @ toward > back
+
+    def _positions(self) -> NDArray[np.float64]:
+        return np.array([place.position_world for place in self.places], dtype=np.float64)
+
+    def _columns(self, camera: PinholeCamera) -> NDArray[np.float64]:
+        """Where the places are across the image, as parts of its longer side, shape (m,)."""
+        side = max(camera.width, camera.height)
+        columns = (camera.project(self._positions())[:, 0] + 0.5) / side
+        if np.any(np.diff(columns) <= 0.0) or not np.isfinite(columns).all():
+            raise BadImageError(
+                "the places are not in order from the left of the image; check the parameter "
+                "stack_positions and camera/extrinsics"
+            )
+        return columns
+
+    def _without_places(self, stacks: tuple[tuple[int, ...], ...], problem: str = "") -> Standing:
+        height = self.places[0].position_world[2] if self.places else 0.0
+        return Standing(stacks, (height,) * len(stacks), problem=problem)
+
+
+def count_stacks(mask: NDArray[np.bool_]) -> int:
+    """k = ½ max over rows of the intersections between a horizontal line and the mask's outline.
+
+    Every run of mask pixels in a row makes two intersections. Before they are counted, holes and
+    gaps that are too narrow to be a gap between stacks are closed and specks that are too narrow to
+    be a block are removed; afterwards, counts that are seen on a few rows only are ignored.
+
+    Args:
+        mask: union of all objects' masks, shape (height, width).
+
+    Returns:
+        Number of stacks; 0 for an empty mask.
+    """
+    height, width = mask.shape
+    narrow = max(1, round(NOISE_WIDTH * width)) + 1
+    rows = max(1, round(NOISE_ROWS * height))
+    square = np.ones((narrow, narrow), np.uint8)
+    padded = np.pad(mask.astype(np.uint8), narrow)
+    closed = cv2.morphologyEx(padded, cv2.MORPH_CLOSE, square)
+    opened = cv2.morphologyEx(closed, cv2.MORPH_OPEN, square)
+    counts = np.count_nonzero(np.diff(opened.astype(np.int8), axis=1) > 0, axis=1)
+    for count in range(counts.max(initial=0), 0, -1):
+        if np.count_nonzero(counts >= count) >= rows:
+            return count
+    return int(mask.any())
+
+
+def stacks_from_coordinates(
+    coordinates: NDArray[np.float64], count: int
+) -> tuple[tuple[int, ...], ...]:
+    """Groups objects by horizontal coordinate and orders each group by vertical coordinate.
+
+    Args:
+        coordinates: from the bottom-left corner, (right, up), shape (N, 2).
+        count: number of stacks k.
+
+    Returns:
+        For each stack from the left, the indices of its objects from the bottom.
+
+    Raises:
+        ClusteringError: if ``count`` is not in 1..N.
+    """
+    clusters = cluster_on_line(coordinates[:, 0], count)
+    return tuple(
+        tuple(int(i) for i in cluster[np.argsort(coordinates[cluster, 1], kind="stable")])
+        for cluster in clusters
+    )
+
+
+def assign_places(columns: ArrayLike, place_columns: ArrayLike) -> list[int]:
+    """Which place each stack stands on: the assignment of least squared distance that keeps order.
+
+    Args:
+        columns: horizontal image coordinates of k stacks, from the left.
+        place_columns: those of the m places, from the left, in the same unit.
+
+    Returns:
+        k indices of places, ascending.
+
+    Raises:
+        PlacesError: if there are more stacks than places.
+    """
+    seen, places = np.asarray(columns, dtype=float), np.asarray(place_columns, dtype=float)
+    k, m = len(seen), len(places)
+    if k > m:
+        raise PlacesError(f"{k} stacks are seen but there are {m} places")
+    best = np.full((k + 1, m + 1), np.inf)  # best[i, j]: i stacks on the first j places
+    best[0] = 0.0
+    for i in range(1, k + 1):
+        for j in range(i, m + 1):
+            taken = best[i - 1, j - 1] + (seen[i - 1] - places[j - 1]) ** 2
+            best[i, j] = min(best[i, j - 1], taken)
+    assigned = []
+    i, j = k, m
+    while i > 0:
+        if best[i, j] < best[i, j - 1]:
+            assigned.append(j - 1)
+            i -= 1
+        j -= 1
+    return assigned[::-1]
+
+
+def with_empty_places(
+    stacks: Sequence[Sequence[int]], places: Sequence[int], place_count: int
+) -> tuple[tuple[int, ...], ...]:
+    """The stacks of all m places, empty where none stands."""
+    by_place = dict(zip(places, stacks))
+    return tuple(tuple(by_place.get(index, ())) for index in range(place_count))

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Segments: the masks of a picture's blocks, and the interface of what finds them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final, Protocol
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from perception_node.observation import Observation
+
+Mask = NDArray[np.bool_]
+
+#: Labels with fewer pixels than this part of the image are specks, not blocks.
+MIN_AREA: Final = 3e-4
+
+_CRACK: Final = np.ones((3, 3), np.uint8)
+
+
+@dataclass(frozen=True)
+class Segment:
+    """The pixels of one block.
+
+    Attributes:
+        label: its number in the label image.
+        mask: all pixels with that label, shape (height, width).
+        part: those of its largest connected part, without detached specks, shape (height, width);
+            the same array where there is nothing to leave out.
+    """
+
+    label: int
+    mask: Mask
+    part: Mask
+
+
+@dataclass(frozen=True)
+class Segments:
+    """The N blocks that a segmenter found; iterates over them in the order of their labels.
+
+    Attributes:
+        label_image: the label of every pixel, also of specks; 0 = none, shape (height, width).
+        blocks: those larger than a speck, labels ascending.
+    """
+
+    label_image: NDArray[np.integer]
+    blocks: tuple[Segment, ...]
+
+    @classmethod
+    def from_labels(cls, label_image: NDArray[np.integer]) -> Segments:
+        """The segments of an image of non-negative labels, shape (height, width)."""
+        counts = np.bincount(label_image.ravel())
+        counts[:1] = 0
+        blocks = []
+        for label in np.flatnonzero(counts >= max(1.0, MIN_AREA * label_image.size)):
+            mask = label_image == label
+            blocks.append(Segment(int(label), mask, largest_part(mask)))
+        return cls(label_image, tuple(blocks))
+
+    def __len__(self) -> int:
+        return len(self.blocks)
+
+    def __iter__(self) -> Iterator[Segment]:
+        return iter(self.blocks)
+
+    def union(self) -> Mask:
+        """Pixels of the largest part of any block, shape (height, width)."""
+        together = np.zeros(self.label_image.shape, bool)
+        for block in self.blocks:
+            together |= block.part
+        return together
+
+
+class Segmenter(Protocol):
+    """Whatever finds the blocks of a picture."""
+
+    def __call__(self, observation: Observation, /) -> Segments:
+        """The segments of a checked observation, of its image's size.
+
+        Raises:
+            PerceptionError: if the observation lacks what this segmenter needs.
+        """
+        ...
+
+
+def largest_part(mask: Mask) -> Mask:
+    """The mask without detached specks: its largest part, after one-pixel cracks are bridged.
+
+    The same array where there is nothing to leave out.
+    """
+    rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))
+    if len(rows) == 0:
+        return mask
+    box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    closed = cv2.morphologyEx(mask[box].astype(np.uint8), cv2.MORPH_CLOSE, _CRACK)
+    count, parts, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8)
+    if count <= 2:
+        return mask
+    largest = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
+    part = np.zeros_like(mask)
+    part[box] = mask[box] & (parts == largest)
+    return part

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The verdict: whether a graph can be planned on, and if not, a sentence that says why.
+
+A graph is honest if every block stands as the words ``up`` and ``stackN`` claim, if nothing hides
+the places, and if the visual module reproduces what it saw (A.2.5).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from scene_graph import GraphStatus, SceneGraph, base_name
+
+from .blocks import Blocks, MeasuredBlock
+from .config import PerceptionConfig, StabilityLimits
+from .names import Names
+from .places import Standing
+from .places.occlusion import Occlusion
+
+
+class Verdict(NamedTuple):
+    """A status, and what a person may do about it; empty for a confident graph."""
+
+    status: GraphStatus
+    message: str = ""
+
+
+def judge(
+    graph: SceneGraph,
+    occlusion: Occlusion,
+    standing: Standing,
+    blocks: Blocks,
+    names: Names,
+    config: PerceptionConfig,
+) -> Verdict:
+    """The first reason not to plan on a graph, or that there is none."""
+    if sentence := occluded(occlusion, config.max_hidden):
+        return Verdict(GraphStatus.OCCLUDED, sentence)
+    if standing.problem:
+        return Verdict(GraphStatus.UNSTABLE, f"{standing.problem}; put every block on a place")
+    if sentence := instability(blocks, names.names, standing, config.limits):
+        return Verdict(GraphStatus.UNSTABLE, f"{sentence}; look again, or tidy up by hand")
+    if graph.confidence < config.min_confidence:
+        worst = min(graph.objects, key=lambda item: item.confidence)
+        return Verdict(
+            GraphStatus.LOW_CONFIDENCE,
+            f"the visual module reproduces {worst.name} with a confidence of only "
+            f"{worst.confidence:.2f} (required: {config.min_confidence:.2f}); look again, "
+            "or train it on such scenes",
+        )
+    return Verdict(GraphStatus.CONFIDENT)
+
+
+def judge_empty(occlusion: Occlusion, config: PerceptionConfig) -> Verdict:
+    """The verdict on a picture that shows no block."""
+    if sentence := occluded(occlusion, config.max_hidden):
+        return Verdict(GraphStatus.OCCLUDED, sentence)
+    return Verdict(
+        GraphStatus.NO_OBJECTS, "no block is seen; put blocks on the table, or check the camera"
+    )
+
+
+def occluded(occlusion: Occlusion, max_hidden: float) -> str:
+    """A sentence about the place that is hidden most, or an empty string."""
+    if occlusion.greatest <= max_hidden:
+        return ""
+    worst = int(np.argmax(occlusion.shares))
+    return (
+        f"something that is not a block hides {occlusion.shares[worst]:.0%} of "
+        f"{base_name(worst)}; look again when it is gone"
+    )
+
+
+def instability(
+    blocks: Blocks, names: tuple[str, ...], standing: Standing, limits: StabilityLimits
+) -> str:
+    """A sentence about the first block that does not stand, or an empty string.
+
+    Nothing is said of blocks that were not measured, or where it is not known on which places.
+    """
+    if not blocks.measured:
+        return ""
+    for stack, place in zip(standing.stacks, standing.places):
+        below: MeasuredBlock | None = None
+        under = "the table"
+        for item in stack:
+            block, name = blocks.measured[item], names[item]
+            pose = block.pose
+            if block.tilt > limits.tilt:
+                return f"{name} leans by {np.degrees(block.tilt):.0f} degrees"
+            support = place.position_world[2] if below is None else below.pose.top
+            if abs(pose.bottom - support) > limits.gap:
+                return (
+                    f"{name} is in the air or tilted: its lower end is "
+                    f"{1000 * (pose.bottom - support):.0f} mm above {under}"
+                )
+            centre = place.position_world if below is None else below.pose.position_world
+            offset = float(np.hypot(*np.subtract(pose.position_world[:2], centre[:2])))
+            if below is None and offset > limits.place_tolerance:
+                base = base_name(place.index)
+                return f"{name} stands {1000 * offset:.0f} mm beside the centre of {base}"
+            if below is not None and offset > limits.overhang * pose.size[0]:
+                return f"{name} overhangs {under} by {1000 * offset:.0f} mm"
+            below, under = block, name
+    return ""
