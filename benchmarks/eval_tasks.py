@@ -23,7 +23,7 @@ from results_file import Row, print_rows, quick, wilson_interval, write_result
 from tamp_runtime.node_process import prepare_process
 from tqdm import tqdm
 
-from planner_node.client import PlannerClient
+from planner_node.cli.client import PlannerClient
 from tamp_bringup.processes import NodeDiedError, NodeProcesses, use_own_domain
 from tamp_bringup.scene_observer import SceneObserver, SimulationError
 from tamp_bringup.task import goal_text, random_goal

@@ -10,7 +10,7 @@ import pytest
 from planner_neighbours import Behaviour, FakeMotion, FakePerception, World
 from rclpy.parameter import Parameter
 
-from planner_node.client import PlannerClient
+from planner_node.cli.client import PlannerClient
 from planner_node.node import PlannerNode
 from scene_graph import Stacks
 

@@ -249,7 +249,7 @@ def test_a_restarted_motion_node_has_lost_the_plan(make_bench: Any) -> None:
 def test_without_a_motion_node_the_plan_is_given_up_soon(
     make_bench: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("planner_node.motion_link.DISCOVERY_SECONDS", 1.0)
+    monkeypatch.setattr("planner_node.loop.motion_link.DISCOVERY_SECONDS", 1.0)
     bench = make_bench()
     bench.ros.remove(bench.motion)
     result = bench.achieve(GOAL, timeout=10.0)
@@ -323,7 +323,7 @@ def test_a_defect_while_the_arm_moves_stops_it(
 
     bench = make_bench(run_until_stopped)
     with monkeypatch.context() as patch:
-        patch.setattr("planner_node.closed_loop.ClosedLoop._on_status", defect)
+        patch.setattr("planner_node.loop.ClosedLoop._on_report", defect)
         result = bench.achieve(GOAL)
     assert (result.status, result.module) == (Status.INTERNAL_ERROR, "planner")
     assert "ZeroDivisionError" in result.message

@@ -56,7 +56,7 @@ def test_cancel_while_planning(make_bench: Any, monkeypatch: pytest.MonkeyPatch)
     bench.ros.wait_until(lambda: "brown" in bench.client.plan("red on white").message)
     # No state fulfils this, and all blocks are mentioned: the search has 1.8 million states.
     circle = zip((*names, "orange_box"), (*names[1:], "orange_box", "red_box"))
-    monkeypatch.setattr("planner_node.planning.check_contradictions", lambda *_: None)
+    monkeypatch.setattr("planner_node.search.plan.check_contradictions", lambda *_: None)
     bench.client.start(", ".join(f"{a} on {b}" for a, b in circle))
     bench.feedback_until(lambda item: item.stage == Stage.PLANNING)
     bench.client.cancel()

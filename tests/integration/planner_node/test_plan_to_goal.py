@@ -18,7 +18,7 @@ from tamp_interfaces.srv import PlanToGoal
 from tamp_runtime.messages.images import image_from_array
 
 from planner_node import errors
-from planner_node.client import PlannerClient
+from planner_node.cli.client import PlannerClient
 from planner_node.node import PlannerNode
 
 Status = PlanToGoal.Response

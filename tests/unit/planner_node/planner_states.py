@@ -7,7 +7,9 @@ import itertools
 import random
 from collections.abc import Callable, Iterator
 
-from scene_graph import Stacks
+from hypothesis import strategies as st
+
+from scene_graph import Relation, Stacks
 
 State = Stacks
 
@@ -52,16 +54,29 @@ def random_state(names: tuple[str, ...], stack_count: int, rng: random.Random) -
     return tuple(tuple(stack) for stack in stacks)
 
 
-def relation_holds(state: State, subject: str, predicate: str, object_: str) -> bool:
+def relation_holds(state: State, relation: Relation) -> bool:
     """The meaning of a relation, told by walking through the stacks."""
+    subject, predicate, object_ = relation.subject, relation.predicate, relation.object
     for index, stack in enumerate(state):
         column = [f"stack{index}", *stack]
         if subject not in column[1:]:
             continue
         below = column[: column.index(subject)]
-        if predicate == "on":
+        if predicate == "up":
             return below[-1] == object_
         if predicate == "above":
             return object_ in below
+        assert predicate == "left"
         return any(object_ in other for other in state[index + 1 :])
     return False
+
+
+def relations_between(
+    names: tuple[str, ...], bases: tuple[str, ...]
+) -> st.SearchStrategy[Relation]:
+    """Any relation that a goal can ask for, possible or not."""
+    blocks = st.sampled_from(names)
+    on = st.builds(
+        Relation, blocks, st.sampled_from(("up", "above")), st.sampled_from((*names, *bases))
+    )
+    return st.one_of(on, st.builds(Relation, blocks, st.just("left"), blocks))

@@ -3,7 +3,7 @@
 
 import json
 
-from planner_node.goal_parser import parse_goal, resolve_goal
+from planner_node.goals import parse_goal, resolve_goal
 from sim_node.layouts import random_layout
 from tamp_bringup.task import Failure, TaskResult, goal_text, random_goal
 

@@ -3,121 +3,142 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Final
+from collections.abc import Callable
+from typing import Any
 
-from builtin_interfaces.msg import Time
+from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
-from tamp_interfaces.msg import SceneObject, SymbolicPlan
+from tamp_interfaces.msg import SymbolicPlan
+from tamp_runtime.messages.motion_status import report_to_message
 from tamp_runtime.messages.scene_graph import (
     graph_from_message,
+    graph_to_message,
     moves_to_messages,
     relations_to_messages,
 )
+from tamp_runtime.messages.stamps import nanoseconds, stamp_from_nanoseconds
 
-from scene_graph import Relation, SceneGraphError, Stacks, up_relations
+from scene_graph import GraphStatus, SceneGraph, Stacks
 
-from .action_model import apply_to_graph
-from .errors import NotConfidentError, PlannerError
-from .goals import Goal
-from .search import SearchResult
+from .errors import GoalImageError, InvalidGoalError, NotConfidentError
+from .goals import Goal, goal_of_picture, parse_goal, resolve_goal
+from .loop import Outcome, Plan, Progress, Scene, Sighting, scene_in
 
-GRAPH_STATUSES: Final = (
-    "CONFIDENT",
-    "LOW_CONFIDENCE",
-    "OCCLUDED",
-    "UNSTABLE",
-    "NO_OBJECTS",
-    "BAD_IMAGE",
-)
-MOTION_STATES: Final = ("IDLE", "OPTIMISING", "EXECUTING", "SUCCEEDED", "CANCELLED", "FAILED")
+#: Asks perception for the scene graph of an image and its segmentation.
+Interpret = Callable[[Image, Image], SceneGraphMsg]
 
 
-@dataclass(frozen=True)
-class Scene:
-    """A scene graph that can be planned on: the message and the state that it describes."""
-
-    message: Any
-    stacks: Stacks
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The names of all objects, sorted."""
-        return tuple(sorted(name for stack in self.stacks for name in stack))
-
-
-def scene_from_message(message: SceneGraphMsg, min_confidence: float) -> Scene:
-    """Raises NotConfidentError if the graph cannot be planned on; the sentence says why."""
-    if message.status != SceneGraphMsg.CONFIDENT:
-        raise NotConfidentError(
-            message.message
-            or f"perception reports {constant_name(SceneGraphMsg, message.status, GRAPH_STATUSES)}"
-        )
-    if message.confidence < min_confidence:
-        raise NotConfidentError(
-            f"the scene graph's confidence {message.confidence:.2f} is below min_confidence "
-            f"{min_confidence:.2f}; look again, or lower the parameter"
-        )
+def sighting_from_message(message: SceneGraphMsg) -> Sighting:
+    """What perception reports; a graph that cannot be read becomes a defect of the sighting."""
+    graph, status, defect = SceneGraph((), frozenset()), GraphStatus.CONFIDENT, ""
     try:
+        status = GraphStatus(message.status)
         graph = graph_from_message(message)
-        stacks = graph.stacks()
-    except (SceneGraphError, ValueError) as error:
-        raise NotConfidentError(f"the scene graph contradicts itself: {error}") from error
-    if not graph.places:
-        raise NotConfidentError("the scene graph has no bases, so that stacks cannot be told apart")
-    on_stacks = {name for stack in stacks for name in stack}
-    if on_stacks != set(graph.names):
-        odd = ", ".join(sorted(on_stacks ^ set(graph.names)))
-        raise NotConfidentError(
-            f"the scene graph is incomplete: objects and relations differ: {odd}"
-        )
-    return Scene(message, stacks)
-
-
-def plan_to_message(
-    scene: Scene, goal: Goal, result: SearchResult, plan_id: str, stamp: Time
-) -> SymbolicPlan:
-    return SymbolicPlan(
-        header=Header(stamp=stamp, frame_id=scene.message.header.frame_id),
-        plan_id=plan_id,
-        initial=scene.message,
-        moves=moves_to_messages(result.moves, result.states),
-        goal=relations_to_messages(goal.witnesses(result.states[-1])),
+    except ValueError as error:
+        defect = str(error)
+    return Sighting(
+        graph,
+        status,
+        message.message,
+        nanoseconds(message.header.stamp),
+        message.header.frame_id,
+        defect,
     )
 
 
-def predicted_scenes(scene: Scene, result: SearchResult) -> list[SceneGraphMsg]:
-    """The scene after each move, by the action model M: names, relations and bases, no poses."""
-    graphs = []
-    relations: frozenset[Relation] = up_relations(scene.stacks)
-    for move in result.moves:
-        relations = apply_to_graph(relations, move)
-        graphs.append(
-            SceneGraphMsg(
-                header=Header(frame_id=scene.message.header.frame_id),
-                objects=[
-                    SceneObject(name=item.name, color=item.color, shape=item.shape, size=item.size)
-                    for item in scene.message.objects
-                ],
-                relations=relations_to_messages(relations),
-                bases=scene.message.bases,
-                confidence=scene.message.confidence,
-            )
+def scene_to_message(scene: Scene) -> SceneGraphMsg:
+    """The scene graph that was planned on, as perception sent it."""
+    return graph_to_message(scene.graph, _header(scene.stamp, scene.frame_id))
+
+
+def plan_to_message(plan: Plan) -> SymbolicPlan:
+    """The plan as the motion node takes it."""
+    return SymbolicPlan(
+        header=_header(plan.stamp, plan.scene.frame_id),
+        plan_id=plan.plan_id,
+        initial=scene_to_message(plan.scene),
+        moves=moves_to_messages(plan.moves, plan.states),
+        goal=relations_to_messages(plan.goal.relations),
+    )
+
+
+def stop_to_message(plan: Plan, stamp: int) -> SymbolicPlan:
+    """The request to stop a plan: its name without moves; ``stamp`` is the ROS time [ns]."""
+    return SymbolicPlan(header=_header(stamp, plan.scene.frame_id), plan_id=plan.plan_id)
+
+
+def predicted_to_messages(plan: Plan) -> list[SceneGraphMsg]:
+    """The predicted scene after each move."""
+    return [graph_to_message(graph, _header(0, plan.scene.frame_id)) for graph in plan.predicted]
+
+
+class FeedbackWriter:
+    """Progress as feedback of AchieveGoal; a plan is converted once, however often it is sent."""
+
+    def __init__(self) -> None:
+        self._plan: Plan | None = None
+        self._message = AchieveGoal.Feedback()
+
+    def message(self, progress: Progress) -> AchieveGoal.Feedback:
+        """The feedback; the same object each time."""
+        message, plan = self._message, progress.plan
+        if plan is not None and plan is not self._plan:
+            self._plan = plan
+            message.plan, message.states = plan_to_message(plan), predicted_to_messages(plan)
+        message.stage = int(progress.stage)
+        message.message = progress.message
+        message.motion = report_to_message(
+            progress.motion, stamp_from_nanoseconds(progress.motion.stamp)
         )
-    return graphs
+        message.replans = progress.replans
+        return message
 
 
-def status_code(error: PlannerError) -> int:
-    """The number of an error in PlanToGoal and AchieveGoal, which share it."""
-    code: int = getattr(AchieveGoal.Result, error.status)
-    return code
+def outcome_to_message(outcome: Outcome) -> AchieveGoal.Result:
+    """The result of achieve_goal."""
+    return AchieveGoal.Result(
+        status=int(outcome.status),
+        message=outcome.message,
+        module=outcome.module,
+        moves_planned=outcome.moves_planned,
+        moves_executed=outcome.moves_executed,
+        replans=outcome.replans,
+        initial=scene_to_message(outcome.initial) if outcome.initial else SceneGraphMsg(),
+        final=scene_to_message(outcome.final) if outcome.final else SceneGraphMsg(),
+        motion=report_to_message(outcome.motion, stamp_from_nanoseconds(outcome.motion.stamp)),
+        perceive_seconds=outcome.perceive_seconds,
+        plan_seconds=outcome.plan_seconds,
+        motion_seconds=outcome.motion_seconds,
+        execute_seconds=outcome.execute_seconds,
+    )
 
 
-def constant_name(message_type: Any, value: int, names: tuple[str, ...]) -> str:
-    """The one of ``names`` whose constant in the message has this value."""
-    for name in names:
-        if getattr(message_type, name) == value:
-            return name
-    return str(value)
+def read_goal(request: Any, interpret: Interpret) -> Callable[[Stacks], Goal]:
+    """Everything about a goal that needs no scene; the result finds its objects in a scene.
+
+    Args:
+        request: a request of PlanToGoal or a goal of AchieveGoal.
+
+    Raises:
+        InvalidGoalError: the text makes no sense, or there are text and image.
+        GoalImageError: the image makes no sense. The result raises it if the image shows other
+            objects than the scene, or UnknownObjectError or AmbiguousObjectError for a text.
+    """
+    has_image = request.goal_image.width > 0 or request.goal_segmentation.width > 0
+    if not has_image:
+        parsed = parse_goal(request.goal)
+        return lambda seen: resolve_goal(parsed, [name for stack in seen for name in stack])
+    if request.goal.strip():
+        raise InvalidGoalError("there is a goal text and a goal image; give one of them", 0)
+    message = interpret(request.goal_image, request.goal_segmentation)
+    try:
+        shown = scene_in(sighting_from_message(message))
+    except NotConfidentError as error:
+        raise GoalImageError(f"the goal image cannot be used: {error}") from error
+    return lambda seen: goal_of_picture(shown.stacks, seen)
+
+
+def _header(stamp: int, frame_id: str) -> Header:
+    return Header(stamp=stamp_from_nanoseconds(stamp), frame_id=frame_id)

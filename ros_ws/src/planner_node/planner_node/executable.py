@@ -13,9 +13,9 @@ def planner_node() -> int:
 
 def plan_to_goal() -> int:
     """Entry point of ``ros2 run planner_node plan_to_goal``."""
-    return run_module("planner_node.commands", "plan_to_goal", stopped=130)
+    return run_module("planner_node.cli.commands", "plan_to_goal", stopped=130)
 
 
 def achieve_goal() -> int:
     """Entry point of ``ros2 run planner_node achieve_goal``."""
-    return run_module("planner_node.commands", "achieve_goal", stopped=130)
+    return run_module("planner_node.cli.commands", "achieve_goal", stopped=130)

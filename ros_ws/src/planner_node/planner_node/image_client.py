@@ -14,7 +14,7 @@ from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import ImageToSceneGraph
 
 from .errors import CancelledError, GoalImageError
-from .scene_watch import POLL_SECONDS
+from .loop.scene_watch import POLL_SECONDS
 from .settings import Settings
 
 

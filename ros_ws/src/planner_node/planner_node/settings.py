@@ -1,21 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parameters of planner_node: meaning, range and default in one place."""
+"""What the parameters of planner_node set, as plain values."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
-from tamp_runtime.parameters import ParameterSpec
-
-from .search import DEFAULT_MAX_EXPANSIONS
+from .search import AUTO, DEFAULT_MAX_EXPANSIONS
 
 
 @dataclass
 class Settings:
-    """Values of the parameters; one instance is shared, so that a change takes effect at once."""
+    """Values of the parameters; one instance is shared, so that a change takes effect at once.
+
+    What each means stands in :data:`planner_node.parameters.PARAMETERS`; times are in seconds.
+    """
 
     max_expansions: int = DEFAULT_MAX_EXPANSIONS
+    search_algorithm: str = AUTO
     min_confidence: float = 0.0
     graph_max_age: float = 5.0
     perceive_timeout: float = 15.0
@@ -24,68 +27,7 @@ class Settings:
     motion_silence_timeout: float = 30.0
     max_replans: int = 5
 
-    def update(self, values: dict[str, Any]) -> None:
+    def update(self, values: Mapping[str, Any]) -> None:
+        """Takes over the values of some parameters by name."""
         for name, value in values.items():
             setattr(self, name, value)
-
-
-_DEFAULTS: Final = Settings()
-
-PARAMETERS: Final = (
-    ParameterSpec(
-        "max_expansions",
-        _DEFAULTS.max_expansions,
-        "Bound of the search in expanded states; a million take a few seconds and 0.5 GB.",
-        1,
-        1_000_000_000,
-    ),
-    ParameterSpec(
-        "min_confidence",
-        _DEFAULTS.min_confidence,
-        "Scene graphs below this confidence (A.2.5) are not planned on, whatever perception says.",
-        0.0,
-        1.0,
-    ),
-    ParameterSpec(
-        "graph_max_age",
-        _DEFAULTS.graph_max_age,
-        "Scene graphs whose stamp is further than this from the node's clock are not used [s].",
-        0.1,
-        3600.0,
-    ),
-    ParameterSpec(
-        "perceive_timeout",
-        _DEFAULTS.perceive_timeout,
-        "achieve_goal waits this long for a confident scene graph [s, wall time].",
-        0.1,
-        3600.0,
-    ),
-    ParameterSpec(
-        "image_service_timeout",
-        _DEFAULTS.image_service_timeout,
-        "Perception has this long to interpret a goal image [s, wall time].",
-        0.1,
-        3600.0,
-    ),
-    ParameterSpec(
-        "motion_accept_timeout",
-        _DEFAULTS.motion_accept_timeout,
-        "The motion node has this long to take up a plan [s, wall time].",
-        0.1,
-        3600.0,
-    ),
-    ParameterSpec(
-        "motion_silence_timeout",
-        _DEFAULTS.motion_silence_timeout,
-        "A plan is given up when motion_status is silent for this long [s, wall time].",
-        0.1,
-        3600.0,
-    ),
-    ParameterSpec(
-        "max_replans",
-        _DEFAULTS.max_replans,
-        "achieve_goal plans this often anew before it gives up.",
-        0,
-        1000,
-    ),
-)

@@ -27,10 +27,10 @@ from tamp_runtime.messages.scene_graph import graph_from_message, moves_from_mes
 from tamp_runtime.node_process import prepare_process
 from tqdm import tqdm
 
-from planner_node.client import PlannerClient
+from planner_node.cli.client import PlannerClient
+from planner_node.cli.plan_text import describe_plan
 from planner_node.errors import PlannerError
-from planner_node.goal_parser import parse_goal
-from planner_node.plan_text import describe_plan
+from planner_node.goals import parse_goal
 from scene_graph import format_stacks
 
 from .plan_picture import draw_plan

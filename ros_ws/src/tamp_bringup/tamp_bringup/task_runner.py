@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 from tamp_interfaces.action import AchieveGoal
 
-from planner_node.client import PlannerClient, PlannerUnavailableError
-from planner_node.goal_parser import parse_goal, resolve_goal
+from planner_node.cli.client import PlannerClient, PlannerUnavailableError
+from planner_node.goals import parse_goal, resolve_goal
 from scene_graph import SceneGraph
 
 from .processes import NodeDiedError

@@ -10,20 +10,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-import numpy as np
 import rclpy
-from PIL import Image as PngImage
-from PIL import UnidentifiedImageError
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 from sensor_msgs.msg import Image
-from std_msgs.msg import Header
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.srv import PlanToGoal
-from tamp_runtime.messages.images import image_from_array
 from tamp_runtime.node_process import prepare_process
 
 from .client import PlannerClient, PlannerUnavailableError
+from .goal_image import ImageFileError, read_goal_image
 from .plan_text import describe_plan
 from .progress import ProgressPrinter
 
@@ -121,25 +117,17 @@ def _read_images(
     parser: argparse.ArgumentParser, options: argparse.Namespace
 ) -> tuple[Image | None, Image | None]:
     """The goal image and its segmentation, or nothing; ends the program if they do not fit."""
-    paths = (options.goal_image, options.goal_segmentation)
-    if (paths[0] is None) != (paths[1] is None):
+    image, labels = options.goal_image, options.goal_segmentation
+    if (image is None) != (labels is None):
         parser.error("--goal-image and --goal-segmentation belong together")
-    if paths[0] is None:
+    if image is None:
         if options.goal is None:
             parser.error("give a goal, such as 'red on blue'")
         return None, None
     try:
-        with PngImage.open(paths[0]) as image, PngImage.open(paths[1]) as labels:
-            colors = np.asarray(image.convert("RGB"))
-            numbers = np.asarray(labels)
-    except (OSError, UnidentifiedImageError) as error:
-        parser.error(f"cannot read the goal image: {error}")
-    if numbers.ndim != 2 or numbers.dtype.kind not in "ui" or numbers.max(initial=0) > 0xFFFF:
-        parser.error(f"{paths[1]} is not an image of labels: one channel of 8 or 16 bits")
-    return (
-        image_from_array(colors, "rgb8", Header()),
-        image_from_array(numbers.astype(np.uint16), "16UC1", Header()),
-    )
+        return read_goal_image(image, labels)
+    except ImageFileError as error:
+        parser.error(str(error))
 
 
 def _init(arguments: Sequence[str]) -> None:

@@ -3,16 +3,20 @@
 
 The rules are sound: what they refuse, no arrangement of blocks fulfils, whatever the scene. They
 are not complete; what they let pass and is impossible all the same, the search proves unreachable.
+They know ``up``, ``above`` and ``left``; of other predicates they say nothing.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Final
 
-from scene_graph import base_index, base_name
+from scene_graph import ABOVE, LEFT, PREDICATES, UP, Relation, base_index, base_name
 
-from .errors import ContradictoryGoalError
-from .goals import ABOVE, LEFT_OF, ON, Goal, GoalRelation
+from ..errors import ContradictoryGoalError
+from .goal import Goal
+
+_KNOWN: Final = (UP, ABOVE, LEFT)
 
 
 def check_contradictions(goal: Goal, stack_count: int) -> None:
@@ -26,15 +30,16 @@ def check_contradictions(goal: Goal, stack_count: int) -> None:
             relations = fewer
     problem = find_contradiction(relations, stack_count)
     assert problem is not None
-    raise ContradictoryGoalError(relations, problem)
+    raise ContradictoryGoalError([item.words for item in relations], problem)
 
 
-def find_contradiction(relations: Iterable[GoalRelation], stack_count: int) -> str | None:
+def find_contradiction(relations: Iterable[Relation], stack_count: int) -> str | None:
     """Why no state of ``stack_count`` stacks fulfils all relations; None if no reason is found."""
     relations = tuple(relations)
     for relation in relations:
         if problem := _impossible_alone(relation, stack_count):
             return problem
+    relations = tuple(item for item in relations if item.predicate in _KNOWN)
     return (
         _two_at_one_place(relations)
         or _impossible_columns(relations, stack_count)
@@ -42,23 +47,25 @@ def find_contradiction(relations: Iterable[GoalRelation], stack_count: int) -> s
     )
 
 
-def _impossible_alone(relation: GoalRelation, stack_count: int) -> str | None:
-    if base_index(relation.subject) is not None:
+def _impossible_alone(relation: Relation, stack_count: int) -> str | None:
+    names = (relation.subject, relation.object)
+    for name in names:
+        index = base_index(name)
+        if index is not None and index >= stack_count:
+            known = ", ".join(base_name(item) for item in range(stack_count))
+            return f"{name} does not exist; there are {known}"
+    if base_index(relation.subject) is not None and relation.predicate in (UP, ABOVE):
         return f"{relation.subject} is a place, it cannot be moved"
-    index = base_index(relation.object)
-    if index is not None and index >= stack_count:
-        known = ", ".join(base_name(item) for item in range(stack_count))
-        return f"{relation.object} does not exist; there are {known}"
-    if relation.subject == relation.object:
-        return f"{relation.subject} cannot be {relation.predicate} itself"
+    if relation.subject == relation.object and relation.predicate in _KNOWN:
+        return f"{relation.subject} cannot be {PREDICATES[relation.predicate].words} itself"
     return None
 
 
-def _two_at_one_place(relations: tuple[GoalRelation, ...]) -> str | None:
+def _two_at_one_place(relations: tuple[Relation, ...]) -> str | None:
     below: dict[str, str] = {}
     above: dict[str, str] = {}
     for relation in relations:
-        if relation.predicate != ON:
+        if relation.predicate != UP:
             continue
         other = below.setdefault(relation.subject, relation.object)
         if other != relation.object:
@@ -69,9 +76,9 @@ def _two_at_one_place(relations: tuple[GoalRelation, ...]) -> str | None:
     return None
 
 
-def _impossible_order(relations: tuple[GoalRelation, ...]) -> str | None:
+def _impossible_order(relations: tuple[Relation, ...]) -> str | None:
     """Closes "is somewhere above" and looks for something above itself."""
-    on = {(item.subject, item.object) for item in relations if item.predicate == ON}
+    on = {(item.subject, item.object) for item in relations if item.predicate == UP}
     above = on | {(item.subject, item.object) for item in relations if item.predicate == ABOVE}
     stack_of = _stacks_of(relations)
     while True:
@@ -99,7 +106,7 @@ def _impossible_order(relations: tuple[GoalRelation, ...]) -> str | None:
     return None
 
 
-def _impossible_columns(relations: tuple[GoalRelation, ...], stack_count: int) -> str | None:
+def _impossible_columns(relations: tuple[Relation, ...], stack_count: int) -> str | None:
     """Bounds the index of every stack; a left-of moves the bounds by one."""
     stack_of = _stacks_of(relations)
     low = dict.fromkeys(stack_of.values(), 0)
@@ -113,7 +120,7 @@ def _impossible_columns(relations: tuple[GoalRelation, ...], stack_count: int) -
             return f"{base_of[stack]} and {name} would have to be one stack"
         base_of[stack] = name
         low[stack] = high[stack] = index
-    lefts = [item for item in relations if item.predicate == LEFT_OF]
+    lefts = [item for item in relations if item.predicate == LEFT]
     for item in lefts:
         if stack_of[item.subject] == stack_of[item.object]:
             return f"{item.subject} and {item.object} would have to be in one stack and apart"
@@ -142,11 +149,11 @@ def _joined(pairs: set[tuple[str, str]]) -> set[tuple[str, str]]:
     return {(a, d) for a, b in pairs for c, d in pairs if b == c}
 
 
-def _stacks_of(relations: tuple[GoalRelation, ...]) -> dict[str, str]:
+def _stacks_of(relations: tuple[Relation, ...]) -> dict[str, str]:
     """For every object and base, a representative of those that must share its stack."""
     stack_of = {name: name for item in relations for name in (item.subject, item.object)}
     for item in relations:
-        if item.predicate in (ON, ABOVE):
+        if item.predicate in (UP, ABOVE):
             kept, merged = stack_of[item.subject], stack_of[item.object]
             stack_of = {
                 name: kept if stack == merged else stack for name, stack in stack_of.items()

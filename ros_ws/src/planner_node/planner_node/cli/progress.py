@@ -9,17 +9,16 @@ from typing import Final, TextIO
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.msg import MotionStatus
 
+from ..loop.report import Stage
 from .plan_text import describe_plan
 
-Feedback = AchieveGoal.Feedback
-
-STAGES: Final = {
-    Feedback.PERCEIVING: "perceive",
-    Feedback.PLANNING: "plan",
-    Feedback.OPTIMISING: "optimise",
-    Feedback.EXECUTING: "execute",
-    Feedback.CONFIRMING: "confirm",
-    Feedback.CANCELLING: "cancel",
+STAGES: Final[dict[int, str]] = {
+    Stage.PERCEIVING: "perceive",
+    Stage.PLANNING: "plan",
+    Stage.OPTIMISING: "optimise",
+    Stage.EXECUTING: "execute",
+    Stage.CONFIRMING: "confirm",
+    Stage.CANCELLING: "cancel",
 }
 BAR_WIDTH: Final = 30
 
@@ -34,8 +33,9 @@ class ProgressPrinter:
         self._bar_is_open = False
 
     def show(self, feedback: AchieveGoal.Feedback) -> None:
+        """Prints what is new in a feedback."""
         motion = feedback.motion
-        moving = feedback.stage == Feedback.EXECUTING and motion.state == MotionStatus.EXECUTING
+        moving = feedback.stage == Stage.EXECUTING and motion.state == MotionStatus.EXECUTING
         step = (motion.move, motion.phase) if moving else feedback.message
         if (feedback.stage, step) != self._shown:
             self._shown = (feedback.stage, step)

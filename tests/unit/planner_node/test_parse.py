@@ -4,7 +4,7 @@ from __future__ import annotations
 import pytest
 
 from planner_node.errors import AmbiguousObjectError, InvalidGoalError, UnknownObjectError
-from planner_node.goal_parser import parse_goal, resolve_goal
+from planner_node.goals import parse_goal, resolve_goal
 
 NAMES = ("blue_box", "green_box", "red_box", "red_cylinder", "yellow_sphere")
 
@@ -25,6 +25,8 @@ def read(text: str, names: tuple[str, ...] = NAMES) -> str:
         ("BLUE ON Green", "blue_box on green_box"),
         ("  blue\non\tgreen ", "blue_box on green_box"),
         ("blue above green", "blue_box above green_box"),
+        ("blue below green", "green_box above blue_box"),
+        ("stack2 below green", "green_box above stack2"),
         ("blue left of green", "blue_box left of green_box"),
         ("blue left green", "blue_box left of green_box"),
         ("blue is to the left of green", "blue_box left of green_box"),
@@ -74,6 +76,7 @@ def test_relations_are_separated_and_repetitions_count_once(text: str) -> None:
         ("blue on green on red", 14, "on red"),
         ("blue on green!", 13, "!"),
         ("blue in green", 8, "green"),
+        ("stack1 in blue", 10, "blue"),
         ("blue left of stack1", 13, "stack1"),
         ("stack1 right of blue", 0, "stack1"),
     ],
@@ -86,6 +89,25 @@ def test_what_makes_no_sense_is_refused_with_its_position(
     assert (caught.value.offset, caught.value.text) == (offset, offending)
     assert f"offset {offset}" in str(caught.value)
     assert text[offset : offset + len(offending)] == offending
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("make a tower", "known are on, above, below, in, left of, right of"),
+        ("blue in green", "'in' needs a place, such as stack0; use 'above' for a block"),
+        ("blue right of stack1", "'right of' relates two blocks; use 'on' or 'above' for a place"),
+    ],
+)
+def test_a_refusal_says_what_would_be_understood(text: str, sentence: str) -> None:
+    with pytest.raises(InvalidGoalError) as caught:
+        parse_goal(text)
+    assert sentence in str(caught.value)
+
+
+def test_names_are_looked_up_in_the_order_they_are_written() -> None:
+    with pytest.raises(UnknownObjectError, match="no 'pink'"):
+        read("pink right of white")
 
 
 def test_an_unknown_object_comes_with_the_known_ones_and_a_guess() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 import pytest
 from planner_states import NAMES, all_states
 
-from planner_node.action_model import apply_to_graph
+from planner_node.action_models import apply_to_graph
 from scene_graph import (
     ImpossibleMoveError,
     Move,

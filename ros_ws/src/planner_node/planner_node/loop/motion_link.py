@@ -4,30 +4,38 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Final
+from dataclasses import dataclass
+from typing import Final, Protocol
 
-from rclpy.publisher import Publisher
-from rclpy.time import Time
-from std_msgs.msg import Header
-from tamp_interfaces.msg import MotionStatus, SymbolicPlan
-from tamp_runtime.messages.stamps import nanoseconds
+from tamp_runtime.motion_report import MotionReport, MotionState
 
-from .conversions import MOTION_STATES, constant_name
-from .errors import MotionBusyError, MotionSilentError
+from ..errors import MotionBusyError, MotionSilentError
+from ..settings import Settings
+from .clock import Clock
+from .plan import Plan
 from .scene_watch import POLL_SECONDS
-from .settings import Settings
 
-RUNNING: Final = (MotionStatus.OPTIMISING, MotionStatus.EXECUTING)
-ENDED: Final = (MotionStatus.SUCCEEDED, MotionStatus.CANCELLED, MotionStatus.FAILED)
+RUNNING: Final = (MotionState.OPTIMISING, MotionState.EXECUTING)
 
 #: A plan that nobody subscribes to is given up after this long, which discovery never takes [s].
 DISCOVERY_SECONDS: Final = 5.0
 #: A motion node needs longer than this to restart; an idle report that follows a report on the
 #: plan sooner was on its way before [s].
 RESTART_SECONDS: Final = 0.5
+
+
+class PlanTopic(Protocol):
+    """The way to the motion node."""
+
+    def publish(self, plan: Plan) -> None:
+        """Asks the motion node to carry out a plan."""
+
+    def publish_stop(self, plan: Plan) -> None:
+        """Asks the motion node to stop: the same plan without moves."""
+
+    def subscribers(self) -> int:
+        """How many hear it."""
 
 
 @dataclass
@@ -37,8 +45,8 @@ class _Execution:
     plan_id: str
     published: float
     heard: float | None = None
-    status: MotionStatus | None = None
-    outcome: MotionStatus | None = None
+    report: MotionReport | None = None
+    outcome: MotionReport | None = None
     updates: int = 0
     lost: bool = False
 
@@ -47,21 +55,28 @@ class _Execution:
 class _Foreign:
     """The newest report on a plan of somebody else, such as this node before a restart."""
 
-    status: MotionStatus
-    heard: float = field(default_factory=time.monotonic)
+    report: MotionReport
+    heard: float
 
 
 class MotionLink:
     """The motion node as the planner sees it; all methods may be called from any thread.
 
-    Silence is measured in wall time, since a simulation that stops also stops its clock.
+    Silence is measured in wall time, see :class:`Clock`.
     """
 
-    def __init__(self, settings: Settings, plans: Publisher, now: Callable[[], int]) -> None:
-        """``plans`` is the publisher of plans; ``now`` is the ROS time [ns]."""
+    def __init__(
+        self,
+        settings: Settings,
+        plans: PlanTopic,
+        now: Callable[[], int],
+        clock: Clock | None = None,
+    ) -> None:
+        """``now`` is the ROS time [ns]."""
         self._settings = settings
         self._plans = plans
         self._now = now
+        self._clock = clock or Clock()
         self._changed = threading.Condition()
         self._execution: _Execution | None = None
         self._foreign: _Foreign | None = None
@@ -73,31 +88,33 @@ class MotionLink:
         with self._changed:
             return self._last_end
 
-    def receive(self, status: MotionStatus) -> None:
+    def receive(self, report: MotionReport) -> None:
+        """Takes what the motion node reports, on whatever plan."""
         with self._changed:
-            if status.state in ENDED:
+            heard = self._clock.now()
+            if report.state.ended:
                 # A stamp in the future is of another clock, and would make every image look old.
                 now = self._now()
-                self._last_end = min(nanoseconds(status.header.stamp) or now, now)
+                self._last_end = min(report.stamp or now, now)
             execution = self._execution
-            ours = execution is not None and status.plan_id == execution.plan_id
-            if status.state in RUNNING:
-                self._foreign = None if ours else _Foreign(status)
-            elif self._foreign and status.plan_id in ("", self._foreign.status.plan_id):
+            ours = execution is not None and report.plan_id == execution.plan_id
+            if report.state in RUNNING:
+                self._foreign = None if ours else _Foreign(report, heard)
+            elif self._foreign and report.plan_id in ("", self._foreign.report.plan_id):
                 self._foreign = None
             if execution is None or execution.outcome is not None:
                 pass
-            elif status.state == MotionStatus.IDLE or (status.state in RUNNING and not ours):
+            elif report.state == MotionState.IDLE or (report.state in RUNNING and not ours):
                 # One motion node does one thing: if it is idle or carries out another plan after
                 # it had taken up ours, then ours is lost.
-                if execution.heard and time.monotonic() > execution.heard + RESTART_SECONDS:
+                if execution.heard is not None and heard > execution.heard + RESTART_SECONDS:
                     execution.lost = True
             elif ours:
-                execution.heard = time.monotonic()
-                execution.status = status
+                execution.heard = heard
+                execution.report = report
                 execution.updates += 1
-                if status.state in ENDED:
-                    execution.outcome = status
+                if report.state.ended:
+                    execution.outcome = report
             self._changed.notify_all()
 
     def check_free(self) -> None:
@@ -108,41 +125,34 @@ class MotionLink:
             if execution and execution.outcome is None:
                 raise MotionBusyError(
                     f"plan {execution.plan_id} is being carried out "
-                    f"({self._state(execution.status)}); wait until it ends",
+                    f"({self._state(execution.report)}); wait until it ends",
                     execution.plan_id,
                 )
-            if foreign and time.monotonic() < foreign.heard + self._settings.motion_silence_timeout:
+            silence = self._settings.motion_silence_timeout
+            if foreign and self._clock.now() < foreign.heard + silence:
                 raise MotionBusyError(
-                    f"the motion node carries out plan {foreign.status.plan_id}, which this "
-                    f"planner does not follow ({self._state(foreign.status)}); wait until it ends",
-                    foreign.status.plan_id,
+                    f"the motion node carries out plan {foreign.report.plan_id}, which this "
+                    f"planner does not follow ({self._state(foreign.report)}); wait until it ends",
+                    foreign.report.plan_id,
                 )
 
-    def start(self, plan: SymbolicPlan) -> None:
+    def start(self, plan: Plan) -> None:
         """Publishes a plan and follows it from now on."""
         with self._changed:
-            self._execution = _Execution(plan.plan_id, time.monotonic())
+            self._execution = _Execution(plan.plan_id, self._clock.now())
         self._plans.publish(plan)
 
-    def stop(self, plan: SymbolicPlan) -> None:
-        """Asks the motion node to stop: the same plan without moves."""
-        self._plans.publish(
-            SymbolicPlan(
-                header=Header(
-                    stamp=Time(nanoseconds=self._now()).to_msg(),
-                    frame_id=plan.header.frame_id,
-                ),
-                plan_id=plan.plan_id,
-            )
-        )
+    def stop(self, plan: Plan) -> None:
+        """Asks the motion node to stop; what becomes of the plan is followed on."""
+        self._plans.publish_stop(plan)
 
     def follow(
-        self, on_status: Callable[[MotionStatus], None], stopped: Callable[[], bool]
-    ) -> MotionStatus | None:
-        """Waits for the end of the started plan, and returns the status that reports it.
+        self, on_report: Callable[[MotionReport], None], stopped: Callable[[], bool]
+    ) -> MotionReport | None:
+        """Waits for the end of the started plan, and returns the report of it.
 
         Args:
-            on_status: called with each new status; one that is overtaken may be left out.
+            on_report: called with each new report; one that is overtaken may be left out.
             stopped: polled; when it returns True, None is returned at once.
 
         Raises:
@@ -154,17 +164,17 @@ class MotionLink:
         while True:
             with self._changed:
                 if execution.updates == told:
-                    self._changed.wait(POLL_SECONDS)
-                news = execution.status if execution.updates > told else None
+                    self._clock.wait(self._changed, POLL_SECONDS)
+                news = execution.report if execution.updates > told else None
                 told = execution.updates
                 outcome = execution.outcome
                 silence = self._give_up_if_silent()
             if news is not None:
-                on_status(news)
+                on_report(news)
             if outcome:
                 return outcome
             if silence:
-                raise MotionSilentError(silence, execution.plan_id, execution.status is not None)
+                raise MotionSilentError(silence, execution.plan_id, execution.report is not None)
             if stopped():
                 return None
 
@@ -190,18 +200,16 @@ class MotionLink:
         if execution.heard is None:
             limit, since = self._settings.motion_accept_timeout, execution.published
             sentence = "the motion node does not take up the plan"
-            if self._plans.get_subscription_count() == 0:
+            if self._plans.subscribers() == 0:
                 limit = min(limit, DISCOVERY_SECONDS)
                 sentence = "nobody subscribes to symbolic_plan"
         else:
             limit, since = self._settings.motion_silence_timeout, execution.heard
             sentence = "the motion node reports nothing any more"
-        if time.monotonic() - since < limit:
+        if self._clock.now() - since < limit:
             return ""
         return f"{sentence} (waited {limit:g} s); is motion_node running?"
 
     @staticmethod
-    def _state(status: MotionStatus | None) -> str:
-        if status is None:
-            return "not taken up yet"
-        return constant_name(MotionStatus, status.state, MOTION_STATES)
+    def _state(report: MotionReport | None) -> str:
+        return "not taken up yet" if report is None else report.state.name

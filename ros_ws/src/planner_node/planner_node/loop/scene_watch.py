@@ -4,16 +4,13 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable
 from typing import Final
 
-from tamp_interfaces.msg import SceneGraph
-from tamp_runtime.messages.stamps import nanoseconds
-
-from .conversions import Scene, scene_from_message
-from .errors import CancelledError, NoSceneGraphError, NotConfidentError, ObjectLostError
-from .settings import Settings
+from ..errors import CancelledError, NoSceneGraphError, NotConfidentError, ObjectLostError
+from ..settings import Settings
+from .clock import Clock
+from .scene import Scene, Sighting, scene_in
 
 #: Longest time that a request to cancel stays unnoticed while waiting [s].
 POLL_SECONDS: Final = 0.05
@@ -25,16 +22,20 @@ class SceneWatch:
     Only the newest one counts: an older confident graph shows a scene that may be gone.
     """
 
-    def __init__(self, settings: Settings, now: Callable[[], int]) -> None:
+    def __init__(
+        self, settings: Settings, now: Callable[[], int], clock: Clock | None = None
+    ) -> None:
         """``now`` is the ROS time [ns], 0 while simulated time has not arrived."""
         self.now = now
         self._settings = settings
+        self._clock = clock or Clock()
         self._arrived = threading.Condition()
-        self._newest: SceneGraph | None = None
+        self._newest: Sighting | None = None
 
-    def receive(self, message: SceneGraph) -> None:
+    def receive(self, sighting: Sighting) -> None:
+        """Takes what perception reports in place of what it reported before."""
         with self._arrived:
-            self._newest = message
+            self._newest = sighting
             self._arrived.notify_all()
 
     def latest(self, after: int = 0, needed: frozenset[str] = frozenset()) -> Scene:
@@ -50,13 +51,13 @@ class SceneWatch:
             ObjectLostError: a needed object is not in it.
         """
         with self._arrived:
-            message = self._newest
-        if message is None:
+            sighting = self._newest
+        if sighting is None:
             raise NoSceneGraphError(
                 "no scene graph has arrived; are the camera (sim_node) and perception_node running?"
             )
-        self._check_time(nanoseconds(message.header.stamp), after)
-        scene = scene_from_message(message, self._settings.min_confidence)
+        self._check_time(sighting.stamp, after)
+        scene = scene_in(sighting, self._settings.min_confidence)
         if missing := sorted(needed - set(scene.names)):
             raise ObjectLostError(missing, scene.names)
         return scene
@@ -74,17 +75,17 @@ class SceneWatch:
                 over.
             CancelledError: ``cancelled`` returned True.
         """
-        deadline = time.monotonic() + self._settings.perceive_timeout
+        deadline = self._clock.now() + self._settings.perceive_timeout
         while True:
             if cancelled():
                 raise CancelledError("cancelled while waiting for a scene graph")
             try:
                 return self.latest(after, needed)
             except (NoSceneGraphError, NotConfidentError, ObjectLostError):
-                if time.monotonic() >= deadline:
+                if self._clock.now() >= deadline:
                     raise
             with self._arrived:
-                self._arrived.wait(POLL_SECONDS)
+                self._clock.wait(self._arrived, POLL_SECONDS)
 
     def _check_time(self, stamp: int, after: int) -> None:
         now = self.now()

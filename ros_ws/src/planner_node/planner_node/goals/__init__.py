@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Goals: what people type, what it means in a scene, and what excludes itself."""
+
+from .contradictions import check_contradictions, find_contradiction
+from .goal import Goal, complete_goal
+from .parse import ParsedRelation, Words, parse_goal
+from .resolve import goal_of_picture, resolve_goal, resolve_name
+
+__all__ = [
+    "Goal",
+    "ParsedRelation",
+    "Words",
+    "check_contradictions",
+    "complete_goal",
+    "find_contradiction",
+    "goal_of_picture",
+    "parse_goal",
+    "resolve_goal",
+    "resolve_name",
+]

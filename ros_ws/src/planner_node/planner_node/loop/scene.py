@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What perception reports, and the scene that can be planned on if it can be trusted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from scene_graph import GraphStatus, SceneGraph, SceneGraphError, Stacks
+
+from ..errors import NotConfidentError
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """A scene graph as perception reports it.
+
+    Attributes:
+        graph: empty where it could not be read.
+        status: what perception thinks of it.
+        message: perception's reason where it is not confident; may be empty.
+        stamp: when its image was taken, in ROS time [ns].
+        frame_id: the frame of all positions.
+        defect: why the graph could not be read, or empty.
+    """
+
+    graph: SceneGraph
+    status: GraphStatus = GraphStatus.CONFIDENT
+    message: str = ""
+    stamp: int = 0
+    frame_id: str = ""
+    defect: str = ""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A scene graph that can be planned on, and the state that it describes.
+
+    Attributes:
+        graph, stamp, frame_id: as in :class:`Sighting`.
+        stacks: every object of the graph stands on one.
+    """
+
+    graph: SceneGraph
+    stacks: Stacks
+    stamp: int = 0
+    frame_id: str = ""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of all objects, sorted."""
+        return tuple(sorted(self.graph.names))
+
+
+def scene_in(sighting: Sighting, min_confidence: float = 0.0) -> Scene:
+    """Raises NotConfidentError if the graph cannot be planned on; the sentence says why."""
+    graph = sighting.graph
+    if sighting.status != GraphStatus.CONFIDENT:
+        raise NotConfidentError(sighting.message or f"perception reports {sighting.status.name}")
+    if graph.confidence < min_confidence:
+        raise NotConfidentError(
+            f"the scene graph's confidence {graph.confidence:.2f} is below min_confidence "
+            f"{min_confidence:.2f}; look again, or lower the parameter"
+        )
+    if sighting.defect:
+        raise NotConfidentError(f"the scene graph contradicts itself: {sighting.defect}")
+    try:
+        stacks = graph.stacks()
+    except SceneGraphError as error:
+        raise NotConfidentError(f"the scene graph contradicts itself: {error}") from error
+    if not graph.places:
+        raise NotConfidentError("the scene graph has no bases, so that stacks cannot be told apart")
+    on_stacks = {name for stack in stacks for name in stack}
+    if on_stacks != set(graph.names):
+        odd = ", ".join(sorted(on_stacks ^ set(graph.names)))
+        raise NotConfidentError(
+            f"the scene graph is incomplete: objects and relations differ: {odd}"
+        )
+    return Scene(graph, stacks, sighting.stamp, sighting.frame_id)

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parameters of planner_node: meaning, range and default in one place."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tamp_runtime.parameters import ParameterSpec
+
+from .search import ALGORITHMS, algorithm_named
+from .settings import Settings
+
+_DEFAULTS: Final = Settings()
+
+
+def _algorithm_problem(name: str) -> str:
+    """one of planner_node.search.ALGORITHMS"""
+    try:
+        algorithm_named(name)
+    except ValueError as error:
+        return f"search_algorithm: {error}"
+    return ""
+
+
+PARAMETERS: Final = (
+    ParameterSpec(
+        "max_expansions",
+        _DEFAULTS.max_expansions,
+        "Bound of the search in expanded states; a million take a few seconds and 0.5 GB.",
+        1,
+        1_000_000_000,
+    ),
+    ParameterSpec(
+        "search_algorithm",
+        _DEFAULTS.search_algorithm,
+        f"How plans are searched for: {', '.join(ALGORITHMS)}; all give shortest plans.",
+        check=_algorithm_problem,
+    ),
+    ParameterSpec(
+        "min_confidence",
+        _DEFAULTS.min_confidence,
+        "Scene graphs below this confidence (A.2.5) are not planned on, whatever perception says.",
+        0.0,
+        1.0,
+    ),
+    ParameterSpec(
+        "graph_max_age",
+        _DEFAULTS.graph_max_age,
+        "Scene graphs whose stamp is further than this from the node's clock are not used [s].",
+        0.1,
+        3600.0,
+    ),
+    ParameterSpec(
+        "perceive_timeout",
+        _DEFAULTS.perceive_timeout,
+        "achieve_goal waits this long for a confident scene graph [s, wall time].",
+        0.1,
+        3600.0,
+    ),
+    ParameterSpec(
+        "image_service_timeout",
+        _DEFAULTS.image_service_timeout,
+        "Perception has this long to interpret a goal image [s, wall time].",
+        0.1,
+        3600.0,
+    ),
+    ParameterSpec(
+        "motion_accept_timeout",
+        _DEFAULTS.motion_accept_timeout,
+        "The motion node has this long to take up a plan [s, wall time].",
+        0.1,
+        3600.0,
+    ),
+    ParameterSpec(
+        "motion_silence_timeout",
+        _DEFAULTS.motion_silence_timeout,
+        "A plan is given up when motion_status is silent for this long [s, wall time].",
+        0.1,
+        3600.0,
+    ),
+    ParameterSpec(
+        "max_replans",
+        _DEFAULTS.max_replans,
+        "achieve_goal plans this often anew before it gives up.",
+        0,
+        1000,
+    ),
+)

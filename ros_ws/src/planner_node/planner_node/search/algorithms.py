@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The search algorithms by name; a new one is a file beside this and an entry here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from .a_star import a_star
+from .both_ends import both_ends
+from .breadth_first import breadth_first
+from .limits import Limits
+from .state import Problem, State
+
+#: Gives a shortest path from the problem's start to a goal, both included. It tells the limits of
+#: every expansion, and raises ``limits.unreachable()`` when there is no path.
+SearchAlgorithm = Callable[[Problem, Limits], list[State]]
+
+AUTO: Final = "auto"
+
+
+def auto(problem: Problem, limits: Limits) -> list[State]:
+    """From both ends where the goal is complete, breadth-first elsewhere."""
+    return (breadth_first if problem.target is None else both_ends)(problem, limits)
+
+
+ALGORITHMS: Final[dict[str, SearchAlgorithm]] = {
+    AUTO: auto,
+    "breadth_first": breadth_first,
+    "both_ends": both_ends,
+    "a_star": a_star,
+}
+
+
+def algorithm_named(name: str) -> SearchAlgorithm:
+    """Raises ValueError for an unknown name; the sentence lists the known ones."""
+    if name not in ALGORITHMS:
+        raise ValueError(f"no search algorithm {name!r}; known: {', '.join(ALGORITHMS)}")
+    return ALGORITHMS[name]

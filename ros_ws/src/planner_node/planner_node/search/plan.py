@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a state and a goal to a shortest plan, or to the reason why there is none (5.2.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+from scene_graph import Move, Stacks, apply_move
+
+from ..goals.contradictions import check_contradictions
+from ..goals.goal import Goal
+from .algorithms import AUTO, algorithm_named
+from .limits import DEFAULT_MAX_EXPANSIONS, Limits
+from .state import Problem, State
+
+
+@dataclass(frozen=True)
+class SearchResult:
+    """A shortest plan.
+
+    Attributes:
+        moves: empty if the goal already holds.
+        states: the initial state and the one after each move.
+        expanded: number of states whose successors were generated.
+        seconds: wall time.
+    """
+
+    moves: tuple[Move, ...]
+    states: tuple[Stacks, ...]
+    expanded: int
+    seconds: float
+
+
+def make_plan(
+    initial: Stacks,
+    goal: Goal,
+    max_expansions: int = DEFAULT_MAX_EXPANSIONS,
+    cancelled: Callable[[], bool] = lambda: False,
+    algorithm: str = AUTO,
+) -> SearchResult:
+    """A shortest plan; see :func:`search` for the arguments.
+
+    Raises:
+        ContradictoryGoalError: the goal's relations exclude one another.
+        UnreachableError, SearchLimitError, SearchCancelledError: see :func:`search`.
+    """
+    check_contradictions(goal, len(initial))
+    return search(initial, goal, max_expansions, cancelled, algorithm)
+
+
+def search(
+    initial: Stacks,
+    goal: Goal,
+    max_expansions: int = DEFAULT_MAX_EXPANSIONS,
+    cancelled: Callable[[], bool] = lambda: False,
+    algorithm: str = AUTO,
+) -> SearchResult:
+    """A shortest sequence of moves from a state to a goal.
+
+    Args:
+        cancelled: polled every few milliseconds.
+        algorithm: one of :data:`planner_node.search.ALGORITHMS`.
+
+    Raises:
+        UnreachableError: every reachable state was searched; none fulfils the goal.
+        SearchLimitError: ``max_expansions`` states were expanded before that.
+        SearchCancelledError: ``cancelled`` returned True.
+        ValueError: there is no such algorithm.
+    """
+    find_path = algorithm_named(algorithm)
+    limits = Limits(initial, goal, max_expansions, cancelled)
+    moves: tuple[Move, ...] = ()
+    if not goal.holds(initial):
+        path = find_path(Problem(initial, goal), limits)
+        moves = tuple(_move_between(before, after) for before, after in pairwise(path))
+    states = [initial]
+    for move in moves:
+        states.append(apply_move(states[-1], move))
+    return SearchResult(moves, tuple(states), limits.expanded, limits.seconds())
+
+
+def _move_between(before: State, after: State) -> Move:
+    changes = [len(new) - len(old) for old, new in zip(before, after)]
+    return Move(changes.index(-1), changes.index(1))
