@@ -22,7 +22,7 @@ from planner_node.errors import (
     UnreachableError,
 )
 from planner_node.goals import Goal, complete_goal
-from planner_node.search import (
+from planner_node.search import (ALGORITHMS, Limits, Problem, SearchResult, State, make_plan, search, successors)
     ALGORITHMS,
     Problem,
     SearchResult,
@@ -123,9 +123,10 @@ def test_an_unknown_algorithm_comes_with_the_known_ones() -> None:
 
 
 def test_an_algorithm_of_ones_own_is_used_by_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(
-        ALGORITHMS, "given", lambda _problem, _limits: [("\u0100", ""), ("", "\u0100")]
-    )
+    def first_move(problem: Problem, _limits: Limits) -> list[State]:
+        return [problem.start, next(successors(problem.start))[0]]
+
+    monkeypatch.setitem(ALGORITHMS, "first_move", first_move)
     goal = Goal((Relation("red_box", "up", "stack1"),))
     assert len(make_plan((("red_box",), ()), goal, algorithm="first_move").moves) == 1
 

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The closed loop between a perception and a motion node made of values; no time passes."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
+
+from planner_node.goals import Goal, parse_goal, resolve_goal
+from planner_node.loop import (
+    Clock,
+    ClosedLoop,
+    MotionLink,
+    Outcome,
+    Plan,
+    Progress,
+    SceneWatch,
+    Sighting,
+    Stage,
+)
+from planner_node.settings import Settings
+from scene_graph import Move, Place, SceneGraph, SceneObject, Stacks, apply_move, up_relations
+
+START: Stacks = (("red_box", "blue_box"), ("green_box",), ())
+GOAL = "red on green, blue on red"
+REACHED: Stacks = ((), ("green_box", "red_box", "blue_box"), ())
+
+
+class FakeClock(Clock):
+    """Time passes only where somebody waits; then ``on_wait`` is called."""
+
+    def __init__(self) -> None:
+        self.seconds = 1000.0
+        self.on_wait: Callable[[], None] = lambda: None
+
+    def now(self) -> float:
+        return self.seconds
+
+    def wait(self, changed: threading.Condition, seconds: float) -> None:
+        del changed
+        self.seconds += seconds
+        self.on_wait()
+
+    def ros_now(self) -> int:
+        return round(self.seconds * 1e9)
+
+
+def sighting_of(stacks: Stacks, stamp: int = 0, **fields: Any) -> Sighting:
+    """What perception reports of a state; ``fields`` are those of Sighting."""
+    names = sorted(name for stack in stacks for name in stack)
+    graph = SceneGraph(
+        tuple(SceneObject(name, *name.split("_"), size=(0.05, 0.05, 0.05)) for name in names),
+        up_relations(stacks),
+        tuple(Place(index, (0.0, 0.1 * index, 0.0)) for index in range(len(stacks))),
+        confidence=fields.pop("confidence", 0.9),
+    )
+    return Sighting(**{"graph": graph, "stamp": stamp, "frame_id": "world", **fields})
+
+
+#: What a motion node does with a plan; what it yields it reports, one at a time.
+Behaviour = Callable[["LoopBench", Plan], Iterator[MotionReport]]
+
+
+class LoopBench:
+    """A world, those who look at it and move in it, and the loop between them.
+
+    Attributes:
+        fault: fields of the sightings when something is wrong.
+        silent: perception reports nothing.
+        told: all progress so far.
+        cancel_at: the goal is cancelled as soon as this is true of a progress.
+    """
+
+    def __init__(self, *behaviours: Behaviour, **settings: Any) -> None:
+        self.stacks = START
+        self.fault: dict[str, Any] = {}
+        self.silent = False
+        self.plans: list[Plan] = []
+        self.stops: list[Plan] = []
+        self.audience = 1
+        self.told: list[Progress] = []
+        self.cancel_at: Callable[[Progress], bool] = lambda _: False
+        self.cancelled = False
+        self.shut_down = False
+        self.clock = FakeClock()
+        self.clock.on_wait = self.live_on
+        self.settings = Settings(**settings)
+        self.scenes = SceneWatch(self.settings, self.clock.ros_now, self.clock)
+        self.motion = MotionLink(self.settings, self, self.clock.ros_now, self.clock)
+        self._behaviours = list(behaviours)
+        self._running: tuple[Plan, Iterator[MotionReport]] | None = None
+
+    def achieve(self, goal: str = GOAL) -> Outcome:
+        return self.loop().run(lambda: self.read(goal))
+
+    def loop(self) -> ClosedLoop:
+        return ClosedLoop(
+            self.settings,
+            self.scenes,
+            self.motion,
+            self._hear,
+            lambda: self.cancelled,
+            lambda: self.shut_down,
+            self.clock,
+        )
+
+    def look(self) -> None:
+        self.scenes.receive(sighting_of(self.stacks, self.clock.ros_now(), **self.fault))
+
+    def report(self, report: MotionReport) -> None:
+        self.motion.receive(replace(report, stamp=self.clock.ros_now()))
+
+    def live_on(self) -> None:
+        """One period of the neighbours."""
+        if not self.silent:
+            self.look()
+        if self._running:
+            plan, reports = self._running
+            if (report := next(reports, None)) is not None:
+                self.report(replace(report, plan_id=report.plan_id or plan.plan_id))
+
+    def stages(self) -> list[Stage]:
+        return list(dict.fromkeys(item.stage for item in self.told))
+
+    # The motion node's side of the topic symbolic_plan.
+
+    def publish(self, plan: Plan) -> None:
+        self.plans.append(plan)
+        behaviour = self._behaviours.pop(0) if self._behaviours else obey
+        self._running = (plan, behaviour(self, plan))
+
+    def publish_stop(self, plan: Plan) -> None:
+        self.stops.append(plan)
+
+    def subscribers(self) -> int:
+        return self.audience
+
+    def _hear(self, progress: Progress) -> None:
+        self.told.append(progress)
+        self.cancelled = self.cancelled or self.cancel_at(progress)
+
+    @staticmethod
+    def read(goal: str) -> Callable[[Stacks], Goal]:
+        """What the loop gets of a goal."""
+        parsed = parse_goal(goal)
+        return lambda seen: resolve_goal(parsed, [name for stack in seen for name in stack])
+
+
+def carry_out(bench: LoopBench, moves: Sequence[Move]) -> Iterator[MotionReport]:
+    yield MotionReport(state=MotionState.OPTIMISING, message="optimising")
+    for index, move in enumerate(moves):
+        bench.stacks = apply_move(bench.stacks, move)
+        yield MotionReport(state=MotionState.EXECUTING, move=index, moves_done=index + 1)
+
+
+def obey(bench: LoopBench, plan: Plan) -> Iterator[MotionReport]:
+    """Everything goes well."""
+    yield from carry_out(bench, plan.moves)
+    yield MotionReport(
+        state=MotionState.SUCCEEDED, moves_done=len(plan.moves), optimisation_seconds=0.01
+    )
+
+
+def obey_blindly(bench: LoopBench, plan: Plan) -> Iterator[MotionReport]:
+    """Everything goes well, but the camera shows nothing any more."""
+    bench.silent = True
+    yield from obey(bench, plan)
+
+
+def fail(reason: MotionReason, message: str, after: int = 0) -> Behaviour:
+    """Fails for a reason after some moves."""
+
+    def behaviour(bench: LoopBench, plan: Plan) -> Iterator[MotionReport]:
+        yield from carry_out(bench, plan.moves[:after])
+        yield MotionReport(
+            state=MotionState.FAILED, reason=reason, message=message, moves_done=after
+        )
+
+    return behaviour
+
+
+def knock(stacks: Stacks) -> Behaviour:
+    """Succeeds, but afterwards the world is another one."""
+
+    def behaviour(bench: LoopBench, plan: Plan) -> Iterator[MotionReport]:
+        yield from carry_out(bench, plan.moves)
+        bench.stacks = stacks
+        yield MotionReport(state=MotionState.SUCCEEDED, moves_done=len(plan.moves))
+
+    return behaviour
+
+
+def ignore(_bench: LoopBench, _plan: Plan) -> Iterator[MotionReport]:
+    """Does not answer at all."""
+    return iter(())
+
+
+def take_up_and_die(_bench: LoopBench, _plan: Plan) -> Iterator[MotionReport]:
+    yield MotionReport(state=MotionState.EXECUTING)
+
+
+def restart(_bench: LoopBench, _plan: Plan) -> Iterator[MotionReport]:
+    """Takes the plan up and knows nothing of it any more."""
+    yield MotionReport(state=MotionState.EXECUTING)
+    while True:
+        yield MotionReport(plan_id="-", state=MotionState.IDLE)
+
+
+def run_until_stopped(bench: LoopBench, plan: Plan) -> Iterator[MotionReport]:
+    """Moves on and on; puts down what it holds when it is stopped."""
+    while not bench.stops:
+        yield MotionReport(state=MotionState.EXECUTING)
+    bench.stacks = apply_move(bench.stacks, plan.moves[0])
+    yield MotionReport(state=MotionState.CANCELLED, moves_done=1, message="put red_box down first")

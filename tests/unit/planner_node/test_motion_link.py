@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the planner makes of what the motion node reports, and of its silence."""
+
+from __future__ import annotations
+
+import pytest
+from loop_bench import START, FakeClock, sighting_of
+from tamp_runtime.motion_report import MotionReport, MotionState
+
+from planner_node.errors import MotionBusyError, MotionSilentError
+from planner_node.goals import complete_goal
+from planner_node.loop import MotionLink, Plan, plan_for, scene_in
+from planner_node.search import make_plan
+from planner_node.settings import Settings
+
+OPTIMISING, EXECUTING = MotionState.OPTIMISING, MotionState.EXECUTING
+SUCCEEDED, IDLE = MotionState.SUCCEEDED, MotionState.IDLE
+
+
+class Linked:
+    """A link, its clock, and the other end of its topic."""
+
+    def __init__(self) -> None:
+        self.clock = FakeClock()
+        self.settings = Settings(motion_accept_timeout=20.0, motion_silence_timeout=10.0)
+        self.published: list[Plan] = []
+        self.stopped: list[Plan] = []
+        self.audience = 1
+        self.link = MotionLink(self.settings, self, self.clock.ros_now, self.clock)
+
+    def publish(self, plan: Plan) -> None:
+        self.published.append(plan)
+
+    def publish_stop(self, plan: Plan) -> None:
+        self.stopped.append(plan)
+
+    def subscribers(self) -> int:
+        return self.audience
+
+    def start(self) -> str:
+        """Starts a plan and returns its name."""
+        scene = scene_in(sighting_of(START))
+        goal = complete_goal(((), (), ("green_box", "red_box", "blue_box")))
+        plan = plan_for(scene, goal, make_plan(START, goal), self.clock.ros_now())
+        self.link.start(plan)
+        return plan.plan_id
+
+    def report(self, plan_id: str, state: MotionState, stamp: int = 0) -> None:
+        self.link.receive(MotionReport(plan_id=plan_id, state=state, stamp=stamp))
+
+    def is_busy(self) -> bool:
+        try:
+            self.link.check_free()
+        except MotionBusyError:
+            return True
+        return False
+
+    def follow(self) -> MotionReport | None:
+        return self.link.follow(lambda _: None, lambda: False)
+
+
+def test_a_plan_keeps_it_busy_until_its_end_is_reported() -> None:
+    linked = Linked()
+    assert not linked.is_busy()
+    plan_id = linked.start()
+    with pytest.raises(MotionBusyError, match=f"{plan_id}.*not taken up yet"):
+        linked.link.check_free()
+    linked.report(plan_id, EXECUTING)
+    with pytest.raises(MotionBusyError, match=f"{plan_id}.*EXECUTING"):
+        linked.link.check_free()
+    linked.report(plan_id, SUCCEEDED)
+    assert not linked.is_busy()
+
+
+def test_a_foreign_plan_keeps_it_busy_until_it_ends() -> None:
+    linked = Linked()
+    linked.report("foreign", EXECUTING)
+    with pytest.raises(MotionBusyError, match="foreign, which this planner does not follow"):
+        linked.link.check_free()
+    linked.report("another", SUCCEEDED)
+    assert linked.is_busy()
+    linked.report("foreign", SUCCEEDED)
+    assert not linked.is_busy()
+
+
+def test_a_foreign_plan_is_over_when_the_motion_node_is_idle_or_silent() -> None:
+    linked = Linked()
+    linked.report("foreign", EXECUTING)
+    linked.report("", IDLE)
+    assert not linked.is_busy()
+    linked.report("foreign", EXECUTING)
+    linked.clock.seconds += 9.9
+    assert linked.is_busy()
+    linked.clock.seconds += 0.2
+    assert not linked.is_busy()
+
+
+def test_every_report_is_told_and_the_last_is_the_outcome() -> None:
+    linked = Linked()
+    plan_id = linked.start()
+    states = [OPTIMISING, EXECUTING, SUCCEEDED]
+    remaining = list(states)
+    linked.clock.on_wait = lambda: linked.report(plan_id, remaining.pop(0))
+    told: list[MotionState] = []
+    end = linked.link.follow(lambda report: told.append(report.state), lambda: False)
+    assert told == states
+    assert end is not None and end.state == SUCCEEDED
+
+
+def test_following_stops_when_asked_to() -> None:
+    linked = Linked()
+    linked.start()
+    assert linked.link.follow(lambda _: None, lambda: True) is None
+
+
+@pytest.mark.parametrize(
+    ("audience", "taken_up", "limit", "sentence"),
+    [
+        (0, False, 5.0, "nobody subscribes to symbolic_plan"),
+        (1, False, 20.0, "does not take up the plan"),
+        (1, True, 10.0, "reports nothing any more"),
+    ],
+)
+def test_silence_ends_the_plan(audience: int, taken_up: bool, limit: float, sentence: str) -> None:
+    linked = Linked()
+    linked.audience = audience
+    plan_id = linked.start()
+    if taken_up:
+        linked.report(plan_id, EXECUTING)
+    with pytest.raises(MotionSilentError, match=sentence) as caught:
+        linked.follow()
+    assert (caught.value.plan_id, caught.value.taken_up) == (plan_id, taken_up)
+    assert linked.clock.seconds == pytest.approx(1000.0 + limit, abs=0.06)
+    assert not linked.is_busy()
+
+
+def test_a_plan_that_nobody_follows_is_given_up_when_it_is_asked_for() -> None:
+    linked = Linked()
+    linked.start()
+    assert linked.is_busy()
+    linked.clock.seconds += 20.1
+    assert not linked.is_busy()
+
+
+@pytest.mark.parametrize(("plan_id", "state"), [("", IDLE), ("another", EXECUTING)])
+def test_a_motion_node_that_does_something_else_has_lost_the_plan(
+    plan_id: str, state: MotionState
+) -> None:
+    linked = Linked()
+    linked.report(linked.start(), EXECUTING)
+    linked.clock.on_wait = lambda: linked.report(plan_id, state)
+    with pytest.raises(MotionSilentError, match="was it restarted"):
+        linked.follow()
+    # Sooner, the report was on its way before the motion node took the plan up.
+    assert linked.clock.seconds == pytest.approx(1000.5, abs=0.11)
+
+
+def test_the_last_end_is_when_it_was_reported_but_never_in_the_future() -> None:
+    linked = Linked()
+    assert linked.link.last_end == 0
+    now = linked.clock.ros_now()
+    linked.report("foreign", SUCCEEDED, stamp=now - 5)
+    assert linked.link.last_end == now - 5
+    linked.report("foreign", SUCCEEDED, stamp=now + 10**12)
+    assert linked.link.last_end == now
+    linked.report("foreign", SUCCEEDED)
+    assert linked.link.last_end == now
+
+
+def test_a_stop_names_the_plan() -> None:
+    linked = Linked()
+    plan_id = linked.start()
+    linked.link.stop(linked.published[0])
+    assert [plan.plan_id for plan in linked.stopped] == [plan_id]
