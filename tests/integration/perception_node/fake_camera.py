@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A stand-in for the camera: publishes frames as the simulator does, and listens to perception."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import TransformStamped
+from rclpy.node import Node
+from sensor_msgs.msg import CameraInfo, Image
+from tamp_interfaces.msg import SceneGraph
+from tamp_runtime.qos import LATCHED, NEWEST
+
+from sim_node.camera import Frame
+from sim_node.conversions import camera_messages, extrinsics_message
+from sim_node.scene import CameraConfig
+
+#: The images of a frame and their camera info, in the order of :meth:`FakeCamera.messages`.
+TOPICS = {
+    "camera/image_raw": Image,
+    "camera/depth/image_raw": Image,
+    "camera/segmentation": Image,
+    "camera/camera_info": CameraInfo,
+}
+
+
+class FakeCamera:
+    """A node's publishers of a camera, and the scene graphs that it heard."""
+
+    def __init__(self, ros_context: Any, node: Node) -> None:
+        self.node = node
+        self.graphs: list[SceneGraph] = []
+        self._wait_until = ros_context.wait_until
+        self._seconds = 100
+        self.publishers = [
+            node.create_publisher(kind, topic, NEWEST) for topic, kind in TOPICS.items()
+        ]
+        self._extrinsics = node.create_publisher(TransformStamped, "camera/extrinsics", LATCHED)
+        node.create_subscription(SceneGraph, "scene_graph", self.graphs.append, NEWEST)
+
+    @property
+    def stamp(self) -> Time:
+        """Of the newest frame."""
+        return Time(sec=self._seconds)
+
+    def calibrate(self) -> None:
+        """Publishes where the camera is."""
+        self._extrinsics.publish(extrinsics_message(CameraConfig(), Time()))
+
+    def calibrate_and_show(self, frame: Frame) -> SceneGraph:
+        """The first graph after the extrinsics have arrived."""
+        self.calibrate()
+        answers: list[SceneGraph] = []
+
+        def arrived() -> bool:
+            answers.append(self.show(frame))
+            return "camera/extrinsics" not in answers[-1].message
+
+        self._wait_until(arrived, what="extrinsics")
+        return answers[-1]
+
+    def messages(self, frame: Frame) -> list[Any]:
+        """Colour, depth, segmentation and camera info with a new stamp."""
+        self._seconds += 1
+        return list(camera_messages(frame, CameraConfig(), self.stamp))
+
+    def send(self, messages: list[Any]) -> SceneGraph:
+        """Publishes messages of the newest stamp, and waits for the graph of it."""
+        for publisher, message in zip(self.publishers, messages):
+            publisher.publish(message)
+        self._wait_until(
+            lambda: self.graphs and self.graphs[-1].header.stamp.sec == self._seconds,
+            what="a graph of the newest frame",
+        )
+        return self.graphs[-1]
+
+    def show(self, frame: Frame) -> SceneGraph:
+        """The graph of a frame."""
+        return self.send(self.messages(frame))
