@@ -22,10 +22,12 @@ from planner_node.errors import (
     UnreachableError,
 )
 from planner_node.goals import Goal, complete_goal
-from planner_node.search import (ALGORITHMS, Limits, Problem, SearchResult, State, make_plan, search, successors)
+from planner_node.search import (
     ALGORITHMS,
+    Limits,
     Problem,
     SearchResult,
+    State,
     make_plan,
     search,
     successors,
