@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Distances between the arm's meshes, a held block, the other blocks and the table, by pybullet.
 
-It shares nothing with the motion optimiser but the plan: it replays a trajectory kinematically,
+It shares nothing with the motion planner but the plan: it replays a trajectory kinematically,
 moves the held block with the hand, and asks Bullet how far things are apart.
 """
 
@@ -15,8 +15,8 @@ import pybullet
 import pybullet_data
 from numpy.typing import NDArray
 
-from motion_node.optimiser import Motion
 from motion_node.phases import PICK, PLACE
+from motion_node.planner import Motion
 from motion_node.robots import PANDA
 from motion_node.robots.joints import JointValues
 from scene_graph import Move, SceneGraph, apply_move

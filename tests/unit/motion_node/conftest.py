@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One optimiser for all tests of the package: building it takes a moment."""
+"""One planner for all tests of the package: building it takes a moment."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from pathlib import Path
 import pybullet_data
 import pytest
 
-from motion_node.features import Features
-from motion_node.optimiser import MotionOptimiser
+from motion_node.planner import MotionPlanner
 
 
 @pytest.fixture(scope="session")
@@ -19,11 +18,5 @@ def urdf() -> str:
 
 
 @pytest.fixture(scope="session")
-def optimiser(urdf: str) -> MotionOptimiser:
-    return MotionOptimiser(urdf)
-
-
-@pytest.fixture(scope="session")
-def features(optimiser: MotionOptimiser) -> Features:
-    """For three stacks."""
-    return optimiser.prepare(3)[0].features
+def planner(urdf: str) -> MotionPlanner:
+    return MotionPlanner(urdf)

@@ -8,9 +8,9 @@ from collision_oracle import CollisionOracle
 from motion_scenes import scene
 
 from motion_node.errors import RobotDescriptionError
-from motion_node.kinematics import Kinematics
-from motion_node.optimiser import MotionOptimiser
+from motion_node.planner import MotionPlanner
 from motion_node.robots import PANDA
+from motion_node.robots.kinematics import Kinematics
 
 
 def test_every_link_is_where_pybullet_says(urdf: str) -> None:
@@ -86,4 +86,4 @@ def test_an_unknown_link_is_named(urdf: str) -> None:
 
 def test_an_arm_without_the_links_that_are_kept_clear_is_refused(urdf: str) -> None:
     with pytest.raises(RobotDescriptionError, match="panda_link6"):
-        MotionOptimiser(urdf.replace('"panda_link6"', '"elbow"'))
+        MotionPlanner(urdf.replace('"panda_link6"', '"elbow"'))

@@ -11,7 +11,7 @@ from motion_scenes import EDGE, scene
 
 from motion_node.execution.arm_state import ArmState
 from motion_node.execution.monitor import Monitor, MonitorSettings, Verdict
-from motion_node.optimiser import MotionOptimiser
+from motion_node.planner import MotionPlanner
 from motion_node.robots import PANDA
 from motion_node.robots.joints import JointValues
 from motion_node.timing.trajectory import Trajectory
@@ -21,9 +21,9 @@ HOME = JointValues(np.array(PANDA.home), np.array([0.04, 0.04]))
 
 
 @pytest.fixture(scope="module")
-def trajectory(optimiser: MotionOptimiser) -> Trajectory:
+def trajectory(planner: MotionPlanner) -> Trajectory:
     graph = scene((2, 1, 0), np.random.default_rng(1))
-    return optimiser.solve(graph, [Move(0, 2), Move(1, 2)], HOME.arm, HOME.fingers).trajectory
+    return planner.solve(graph, [Move(0, 2), Move(1, 2)], HOME.arm, HOME.fingers).trajectory
 
 
 def squeezed(positions: JointValues, half: float = EDGE / 2) -> JointValues:

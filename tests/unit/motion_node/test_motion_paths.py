@@ -9,8 +9,8 @@ from collision_oracle import CollisionOracle, replay, switches
 from motion_scenes import EDGE, random_heights, random_moves, scene
 from numpy.typing import NDArray
 
-from motion_node.optimiser import Motion, MotionOptimiser
 from motion_node.phases import HOME, PICK, PLACE
+from motion_node.planner import Motion, MotionPlanner
 from motion_node.robots import PANDA
 from scene_graph import Move, SceneGraph, apply_move
 
@@ -22,13 +22,13 @@ FREE = 0.008
 
 
 def judge(
-    optimiser: MotionOptimiser,
+    planner: MotionPlanner,
     graph: SceneGraph,
     moves: list[Move],
     start: NDArray[np.float64] = HOME_Q,
 ) -> Motion:
-    motion = optimiser.solve(graph, moves, start, OPEN)
-    result = replay(graph, moves, motion, optimiser.settings.phases.place_gap, vertical=0.03)
+    motion = planner.solve(graph, moves, start, OPEN)
+    result = replay(graph, moves, motion, planner.settings.phases.place_gap, vertical=0.03)
     assert result.free.distance > FREE, result.free
     assert result.support.distance > -0.001, result.support
     stacks = graph.stacks()
@@ -51,10 +51,10 @@ def assert_at_home(motion: Motion) -> None:
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_random_plans_touch_nothing(optimiser: MotionOptimiser, seed: int) -> None:
+def test_random_plans_touch_nothing(planner: MotionPlanner, seed: int) -> None:
     rng = np.random.default_rng(seed)
     graph = scene(random_heights(rng, int(rng.integers(3, 8))), rng)
-    judge(optimiser, graph, random_moves(graph, int(rng.integers(1, 5)), rng))
+    judge(planner, graph, random_moves(graph, int(rng.integers(1, 5)), rng))
 
 
 @pytest.mark.parametrize(
@@ -69,48 +69,45 @@ def test_random_plans_touch_nothing(optimiser: MotionOptimiser, seed: int) -> No
     ],
 )
 def test_low_blocks_beside_tall_towers(
-    optimiser: MotionOptimiser, heights: tuple[int, ...], moves: list[tuple[int, int]]
+    planner: MotionPlanner, heights: tuple[int, ...], moves: list[tuple[int, int]]
 ) -> None:
-    judge(optimiser, scene(heights, np.random.default_rng(0)), [Move(*m) for m in moves])
+    judge(planner, scene(heights, np.random.default_rng(0)), [Move(*m) for m in moves])
 
 
-def test_blocks_may_be_turned(optimiser: MotionOptimiser) -> None:
+def test_blocks_may_be_turned(planner: MotionPlanner) -> None:
     rng = np.random.default_rng(12)
-    judge(optimiser, scene((2, 2, 2), rng, yaw=0.5, offset=0.002), [Move(0, 1), Move(2, 0)])
+    judge(planner, scene((2, 2, 2), rng, yaw=0.5, offset=0.002), [Move(0, 1), Move(2, 0)])
 
 
 @pytest.mark.parametrize("height", [0.0, 0.035, 0.06])
-def test_an_arm_that_starts_over_a_stack_rises_first(
-    optimiser: MotionOptimiser, height: float
-) -> None:
+def test_an_arm_that_starts_over_a_stack_rises_first(planner: MotionPlanner, height: float) -> None:
     """Above the top block: around it, just over it, and well over it."""
     graph = scene((2, 2, 0))
-    keyframes, _ = optimiser.prepare(3)
     near = HOME_Q.copy()
     near[0], near[6] = -0.3, -1.1
     above = np.array([0.5, -0.15, 1.5 * EDGE + height])
-    start = keyframes.inverse.solve(above, np.zeros(1), near)[0]
-    motion = judge(optimiser, graph, [Move(1, 2)], start)
+    start = planner.inverse.solve(above, np.zeros(1), near)[0]
+    motion = judge(planner, graph, [Move(1, 2)], start)
     points = [
-        keyframes.features.hand_pose(q)[0]
+        planner.model.hand_at(q)[0]
         for q in motion.trajectory.sample(np.linspace(0, 0.3, 10))[0].arm
     ]
     assert all(np.hypot(*(point[:2] - above[:2])) < 0.01 or point[2] > above[2] for point in points)
 
 
-def test_limits_hold_everywhere(optimiser: MotionOptimiser) -> None:
+def test_limits_hold_everywhere(planner: MotionPlanner) -> None:
     rng = np.random.default_rng(20)
     graph = scene((3, 2, 1), rng)
-    trajectory = optimiser.solve(graph, random_moves(graph, 4, rng), HOME_Q, OPEN).trajectory
+    trajectory = planner.solve(graph, random_moves(graph, 4, rng), HOME_Q, OPEN).trajectory
     times = np.arange(0.0, trajectory.duration, 0.001)
     positions, velocities = trajectory.sample(times)
     arm, speed = positions.arm, np.abs(velocities.arm)
-    assert (arm >= optimiser.kinematics.lower).all()
-    assert (arm <= optimiser.kinematics.upper).all()
-    timing = optimiser.timing
-    assert (speed <= timing.velocity_scale * optimiser.limits.velocity * 1.001).all()
+    assert (arm >= planner.model.kinematics.lower).all()
+    assert (arm <= planner.model.kinematics.upper).all()
+    timing = planner.timing
+    assert (speed <= timing.velocity_scale * planner.limits.velocity * 1.001).all()
     acceleration = np.abs(np.diff(velocities.arm, axis=0)) / 0.001
-    allowed = timing.acceleration_scale * optimiser.limits.acceleration
+    allowed = timing.acceleration_scale * planner.limits.acceleration
     assert (acceleration <= allowed * 1.01).all()
     fingers = positions.fingers
     assert fingers.min() >= 0.0
@@ -122,19 +119,18 @@ def test_limits_hold_everywhere(optimiser: MotionOptimiser) -> None:
 
 
 def test_at_switches_the_hand_stands_still_straight_down_at_the_grasp(
-    optimiser: MotionOptimiser,
+    planner: MotionPlanner,
 ) -> None:
     rng = np.random.default_rng(21)
     graph = scene((2, 2, 2), rng)
-    motion = optimiser.solve(graph, random_moves(graph, 3, rng), HOME_Q, OPEN)
-    features = optimiser.prepare(3)[0].features
+    motion = planner.solve(graph, random_moves(graph, 3, rng), HOME_Q, OPEN)
     gripping = [interval for interval in motion.trajectory.intervals if interval.gripping]
     assert [i.phase.kind for i in gripping] == [PICK, PLACE] * 3
     for interval in gripping:
         for time in np.linspace(interval.start, interval.end, 5):
             positions, velocities = motion.trajectory.sample(time)
             assert np.abs(velocities.arm).max() < 1e-6
-            point, yaw = features.hand_pose(positions.arm)
+            point, yaw = planner.model.hand_at(positions.arm)
             switch = interval.phase.switch
             assert switch is not None
             assert point == pytest.approx(switch.position_world, abs=2e-4)
@@ -145,17 +141,16 @@ def test_at_switches_the_hand_stands_still_straight_down_at_the_grasp(
         assert (ends[1] < ends[0]) == (interval.phase.kind == PICK)
 
 
-def test_the_hand_comes_from_above_and_leaves_upwards(optimiser: MotionOptimiser) -> None:
+def test_the_hand_comes_from_above_and_leaves_upwards(planner: MotionPlanner) -> None:
     rng = np.random.default_rng(22)
     graph = scene((1, 3, 2), rng)
-    motion = optimiser.solve(graph, random_moves(graph, 3, rng), HOME_Q, OPEN)
-    features = optimiser.prepare(3)[0].features
+    motion = planner.solve(graph, random_moves(graph, 3, rng), HOME_Q, OPEN)
     for interval in motion.trajectory.intervals:
         if interval.gripping:
             continue
         times = np.linspace(interval.start, interval.end, 60)
         points = np.array(
-            [features.hand_pose(q)[0] for q in motion.trajectory.sample(times)[0].arm]
+            [planner.model.hand_at(q)[0] for q in motion.trajectory.sample(times)[0].arm]
         )
         for switch in (interval.phase.start, interval.phase.switch):
             if switch is None:
@@ -167,16 +162,16 @@ def test_the_hand_comes_from_above_and_leaves_upwards(optimiser: MotionOptimiser
             assert low.max() < 0.003
 
 
-def test_the_motion_ends_at_home_with_open_fingers(optimiser: MotionOptimiser) -> None:
-    motion = optimiser.solve(scene((2, 0, 1)), [Move(0, 1)], HOME_Q, OPEN)
+def test_the_motion_ends_at_home_with_open_fingers(planner: MotionPlanner) -> None:
+    motion = planner.solve(scene((2, 0, 1)), [Move(0, 1)], HOME_Q, OPEN)
     assert motion.trajectory.intervals[-1].phase.kind == HOME
     assert_at_home(motion)
     assert not motion.trajectory.velocities.arm[-1].any()
     assert not motion.trajectory.velocities.fingers[-1].any()
 
 
-def test_fingers_that_are_closed_open_before_the_arm_moves(optimiser: MotionOptimiser) -> None:
-    motion = optimiser.solve(scene((2, 0, 1)), [Move(0, 1)], HOME_Q, np.zeros(2))
+def test_fingers_that_are_closed_open_before_the_arm_moves(planner: MotionPlanner) -> None:
+    motion = planner.solve(scene((2, 0, 1)), [Move(0, 1)], HOME_Q, np.zeros(2))
     first = motion.trajectory.intervals[0]
     assert first.gripping
     positions = motion.trajectory.sample(np.array([0.0, first.end]))[0]
@@ -186,20 +181,20 @@ def test_fingers_that_are_closed_open_before_the_arm_moves(optimiser: MotionOpti
 
 @pytest.mark.parametrize("seed", range(4))
 def test_an_empty_hand_that_is_stopped_anywhere_goes_home_and_touches_nothing(
-    optimiser: MotionOptimiser, seed: int
+    planner: MotionPlanner, seed: int
 ) -> None:
     rng = np.random.default_rng(seed)
     graph = scene(random_heights(rng, 6), rng)
     moves = random_moves(graph, 3, rng)
-    motion = optimiser.solve(graph, moves, HOME_Q, OPEN)
+    motion = planner.solve(graph, moves, HOME_Q, OPEN)
     empty = [i for i in motion.trajectory.intervals if not i.phase.tool.held and not i.gripping]
     for interval in empty[:-1]:
         time = rng.uniform(interval.start, interval.end)
         brake = motion.trajectory.brake(time, 0.4)
         rest = brake.positions[-1]
-        home = optimiser.solve_way_home(motion, interval.phase.move, rest.arm, rest.fingers)
+        home = planner.solve_way_home(motion, interval.phase.move, rest.arm, rest.fingers)
         oracle = CollisionOracle(graph)
-        switches(oracle, moves, motion, optimiser.settings.phases.place_gap, until=time)
+        switches(oracle, moves, motion, planner.settings.phases.place_gap, until=time)
         for trajectory in (brake, home.trajectory):
             for at in np.arange(0.0, trajectory.duration, 0.04):
                 oracle.take_up(trajectory.sample(at)[0])
@@ -209,13 +204,13 @@ def test_an_empty_hand_that_is_stopped_anywhere_goes_home_and_touches_nothing(
         assert_at_home(home)
 
 
-def test_the_way_home_from_a_grasp_touches_nothing(optimiser: MotionOptimiser) -> None:
+def test_the_way_home_from_a_grasp_touches_nothing(planner: MotionPlanner) -> None:
     graph = scene((3, 1, 3))
     moves = [Move(1, 0)]
-    motion = optimiser.solve(graph, moves, HOME_Q, OPEN)
+    motion = planner.solve(graph, moves, HOME_Q, OPEN)
     pick = motion.trajectory.intervals[0]
     arm = motion.trajectory.sample(pick.end)[0].arm
-    home = optimiser.solve_way_home(motion, 0, arm, np.array([0.03, 0.03]))
+    home = planner.solve_way_home(motion, 0, arm, np.array([0.03, 0.03]))
     result = replay(graph, [], home, 0.0, vertical=0.03)
     assert result.free.distance > FREE, result.free
     np.testing.assert_allclose(home.trajectory.positions.arm[-1], PANDA.home)

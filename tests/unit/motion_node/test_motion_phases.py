@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 from motion_scenes import EDGE, scene
 
-from motion_node.blocks import Block, block_from_object, grasps, placed, wrap_line
+from motion_node.blocks import Block, block_from_object, placed, read_scene
 from motion_node.errors import InvalidPlanError
-from motion_node.phases import HOME, PICK, PLACE, Phase, PhaseSettings, expand, way_home
+from motion_node.expand import expand, way_home
+from motion_node.phases import HOME, PICK, PLACE, Phase
 from motion_node.robots import PANDA
+from motion_node.settings import PhaseSettings
 from scene_graph import Move, Relation, SceneGraph, SceneObject
 
 SQUEEZE = 0.006
@@ -20,7 +22,8 @@ SQUEEZE = 0.006
 def phases_of(
     graph: SceneGraph, moves: list[tuple[int, int]], names: tuple[str, ...] = ()
 ) -> list[Phase]:
-    return expand(graph, [Move(*m) for m in moves], PANDA.gripper, PhaseSettings(), SQUEEZE, names)
+    steps = [Move(*m) for m in moves]
+    return expand(read_scene(graph), steps, PANDA.gripper, PhaseSettings(), SQUEEZE, names)
 
 
 def box(yaw: float = 0.0, size: tuple[float, float, float] = (EDGE,) * 3) -> SceneObject:
@@ -66,20 +69,10 @@ def test_offsets_do_not_add_up() -> None:
 
 
 def test_a_block_stays_above_its_support() -> None:
-    support = Block("a", (0.53, 0.0, EDGE / 2), 0.0, (EDGE,) * 3)
-    block = Block("b", (0.5, 0.15, EDGE / 2), 0.0, (EDGE,) * 3)
-    grasp = grasps(block, 0.0075, 0.039)[0]
-    after = placed(block, grasp, (0.5, 0.0, 0.0), support, max_overhang=0.2)
+    support = Block((0.53, 0.0, EDGE / 2), 0.0, (EDGE,) * 3, "a")
+    block = Block((0.5, 0.15, EDGE / 2), 0.0, (EDGE,) * 3, "b")
+    after = placed(block, 0.0, (0.5, 0.0, 0.0), support, max_overhang=0.2)
     assert after.position_world == pytest.approx((0.53 - 0.2 * EDGE, 0.0, 1.5 * EDGE))
-
-
-@pytest.mark.parametrize("yaw", [-0.7, -0.2, 0.0, 0.4, 1.2, 2.0, 3.0])
-def test_fingers_close_on_faces_and_along_the_row_of_no_neighbour(yaw: float) -> None:
-    grasp = grasps(block_from_object(box(yaw)), 0.0075, 0.039)[0]
-    assert abs(grasp.yaw) <= np.pi / 4 + 1e-9
-    assert abs(wrap_line(4 * (grasp.yaw - yaw)) / 4) < 1e-6 or np.isclose(
-        np.cos(4 * (grasp.yaw - yaw)), 1.0
-    )
 
 
 def test_a_long_block_is_taken_across() -> None:
@@ -90,17 +83,6 @@ def test_a_long_block_is_taken_across() -> None:
     assert abs(pick.switch.yaw) == pytest.approx(np.pi / 2)
     assert pick.grip == pytest.approx(0.02 - SQUEEZE)
     assert place.tool.half_x == pytest.approx(0.06)
-
-
-@pytest.mark.parametrize(("height", "lowest", "highest"), [(0.014, 0.0, 0.014), (0.12, 0.07, 0.12)])
-def test_low_and_tall_blocks_are_taken_where_hand_and_table_allow(
-    height: float, lowest: float, highest: float
-) -> None:
-    block = block_from_object(box(size=(0.04, 0.04, height)))
-    grasp = grasps(block, tip_below_tcp=0.0075, palm_above_tcp=0.039)[0]
-    tcp = block.position_world[2] + grasp.height
-    assert tcp - 0.0075 >= lowest + 0.004
-    assert tcp + 0.039 >= highest + 0.004
 
 
 def test_a_lying_block_is_taken_by_its_vertical_axis() -> None:

@@ -11,7 +11,7 @@ from motion_scenes import random_moves
 
 from motion_node.execution.arm_state import ArmState
 from motion_node.execution.monitor import Monitor, MonitorSettings, Verdict
-from motion_node.optimiser import MotionOptimiser
+from motion_node.planner import MotionPlanner
 from motion_node.robots import PANDA
 from motion_node.robots.joints import JointValues
 from scene_graph import Move, SceneGraph, Stacks, apply_move
@@ -39,12 +39,12 @@ def joints(world: World) -> JointValues:
 
 
 def carry_out(
-    world: World, optimiser: MotionOptimiser, graph: SceneGraph, moves: list[Move]
+    world: World, planner: MotionPlanner, graph: SceneGraph, moves: list[Move]
 ) -> Verdict:
     """Follows the trajectory as the simulator does, watched by the monitor."""
     controller = ArmController(world)
     start = joints(world)
-    trajectory = optimiser.solve(graph, moves, start.arm, start.fingers).trajectory
+    trajectory = planner.solve(graph, moves, start.arm, start.fingers).trajectory
     positions, velocities = (
         np.hstack([values.arm, values.fingers])
         for values in (trajectory.positions, trajectory.velocities)
@@ -70,7 +70,7 @@ def assert_stacked(world: World, stacks: Stacks) -> None:
 
 
 @pytest.mark.parametrize(("seed", "blocks"), [(1, 4), (2, 6), (3, 7)])
-def test_towers_are_built(optimiser: MotionOptimiser, seed: int, blocks: int) -> None:
+def test_towers_are_built(planner: MotionPlanner, seed: int, blocks: int) -> None:
     rng = np.random.default_rng(seed)
     with World() as world:
         world.reset(random_layout(seed, blocks), seed)
@@ -80,11 +80,11 @@ def test_towers_are_built(optimiser: MotionOptimiser, seed: int, blocks: int) ->
         for move in moves:
             stacks = apply_move(stacks, move)
         seen = as_perceived(graph, rng, error=0.0015)
-        assert carry_out(world, optimiser, seen, moves) is Verdict.ARRIVED
+        assert carry_out(world, planner, seen, moves) is Verdict.ARRIVED
         assert_stacked(world, stacks)
 
 
-def test_a_tower_of_seven_is_taken_down(optimiser: MotionOptimiser) -> None:
+def test_a_tower_of_seven_is_taken_down(planner: MotionPlanner) -> None:
     names = tuple(f"{color}_box" for color in ("red", "green", "blue", "cyan", "pink", "brown"))
     with World() as world:
         world.reset(((*names, "yellow_box"), (), ()), 5)
@@ -93,11 +93,11 @@ def test_a_tower_of_seven_is_taken_down(optimiser: MotionOptimiser) -> None:
         stacks = graph.stacks()
         for move in moves:
             stacks = apply_move(stacks, move)
-        assert carry_out(world, optimiser, graph, moves) is Verdict.ARRIVED
+        assert carry_out(world, planner, graph, moves) is Verdict.ARRIVED
         assert_stacked(world, stacks)
 
 
-def test_a_block_that_is_not_there_is_noticed(optimiser: MotionOptimiser) -> None:
+def test_a_block_that_is_not_there_is_noticed(planner: MotionPlanner) -> None:
     with World() as world:
         world.reset((("red_box", "green_box"), (), ("blue_box",)), 0)
         graph = true_scene_graph(world)
@@ -110,4 +110,4 @@ def test_a_block_that_is_not_there_is_noticed(optimiser: MotionOptimiser) -> Non
                 for item in graph.objects
             ),
         )
-        assert carry_out(world, optimiser, higher, [Move(0, 1)]) is Verdict.GRASP_LOST
+        assert carry_out(world, planner, higher, [Move(0, 1)]) is Verdict.GRASP_LOST

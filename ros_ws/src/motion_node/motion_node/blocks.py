@@ -1,73 +1,97 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blocks as upright prisms, how a hand takes them, and where they come to stand."""
+"""The blocks of a scene as upright prisms, where they come to stand, and the stacks they form."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from scene_graph import BOX, SceneObject
+from scene_graph import (
+    BOX,
+    CYLINDER,
+    SPHERE,
+    BlockPose,
+    Place,
+    SceneGraph,
+    SceneGraphError,
+    SceneObject,
+    rotation_from_quaternion,
+    wrap_line,
+)
 
 from .errors import InvalidPlanError
 
 #: A block whose vertical axis is farther than this from vertical is leaning [rad].
 MAX_LEAN = 0.3
-
-
-def rotation_from_quaternion(x: float, y: float, z: float, w: float) -> NDArray[np.float64]:
-    """Rotation matrix (3, 3) of a quaternion of any positive norm."""
-    x, y, z, w = np.array([x, y, z, w]) / np.linalg.norm([x, y, z, w])
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-
-
-def wrap_line(angle: float) -> float:
-    """The angle of an undirected line, in (-pi/2, pi/2] [rad]."""
-    return float(np.pi / 2 - np.mod(np.pi / 2 - angle, np.pi))
+#: Shapes that look the same from above however they are turned.
+ROUND = (CYLINDER, SPHERE)
 
 
 @dataclass(frozen=True)
-class Block:
+class Block(BlockPose):
     """A block standing upright.
 
     Attributes:
-        position_world: centre [m].
-        yaw: direction of its first horizontal axis, counter-clockwise from world x [rad].
-        size: full extents along its first and second horizontal axis and vertically [m].
+        name: of the object.
+        shape: ``box``, ``cylinder`` or ``sphere``; it decides how the block can be grasped.
     """
 
     name: str
-    position_world: tuple[float, float, float]
-    yaw: float
-    size: tuple[float, float, float]
+    shape: str = BOX
+
+
+@dataclass(frozen=True)
+class Column:
+    """A stack as an obstacle: an upright box from the table to ``top``, in world axes [m]."""
+
+    center: tuple[float, float]
+    half: tuple[float, float]
+    top: float
+
+
+@dataclass(frozen=True)
+class Scene:
+    """The blocks of each stack from the bottom, and the places on which the stacks stand."""
+
+    places: tuple[Place, ...]
+    stacks: tuple[tuple[Block, ...], ...]
 
     @property
-    def top(self) -> float:
-        """Height of the upper face [m]."""
-        return self.position_world[2] + self.size[2] / 2
+    def floor(self) -> float:
+        """Height of the table [m]."""
+        return min(place.position_world[2] for place in self.places)
 
     @property
-    def bottom(self) -> float:
-        """Height of the lower face [m]."""
-        return self.position_world[2] - self.size[2] / 2
+    def columns(self) -> tuple[Column, ...]:
+        """The stacks as obstacles."""
+        floor = self.floor
+        return tuple(_column(stack, place, floor) for stack, place in zip(self.stacks, self.places))
 
-    @property
-    def half_world(self) -> tuple[float, float]:
-        """Half extents along world x and y of the box that encloses it [m]."""
-        c, s = abs(np.cos(self.yaw)), abs(np.sin(self.yaw))
-        a, b = self.size[0] / 2, self.size[1] / 2
-        return float(c * a + s * b), float(s * a + c * b)
+    def without_top(self, stack: int) -> Scene:
+        """The scene after the top of a stack was taken."""
+        return self._with_stack(stack, self.stacks[stack][:-1])
 
-    def moved(self, position_world: tuple[float, float, float], yaw: float) -> Block:
-        """The same block elsewhere."""
-        return replace(self, position_world=position_world, yaw=yaw)
+    def with_top(self, stack: int, block: Block) -> Scene:
+        """The scene after a block was put onto a stack."""
+        return self._with_stack(stack, (*self.stacks[stack], block))
+
+    def _with_stack(self, index: int, stack: tuple[Block, ...]) -> Scene:
+        return replace(self, stacks=(*self.stacks[:index], stack, *self.stacks[index + 1 :]))
+
+
+def _column(stack: Sequence[Block], place: Place, floor: float) -> Column:
+    if not stack:
+        return Column(place.position_world[:2], (0.0, 0.0), floor)
+    lower = np.min([np.subtract(b.position_world[:2], b.half_world) for b in stack], axis=0)
+    upper = np.max([np.add(b.position_world[:2], b.half_world) for b in stack], axis=0)
+    center, half = (lower + upper) / 2, (upper - lower) / 2
+    return Column(
+        (float(center[0]), float(center[1])),
+        (float(half[0]), float(half[1])),
+        max(block.top for block in stack),
+    )
 
 
 def block_from_object(item: SceneObject) -> Block:
@@ -80,9 +104,9 @@ def block_from_object(item: SceneObject) -> Block:
     norm = float(np.linalg.norm(numbers[3:7]))
     if not np.all(np.isfinite(numbers)) or min(item.size) <= 0 or not 0.5 < norm < 2.0:
         raise InvalidPlanError(f"{item.name} has no usable pose and size", object_name=item.name)
-    if item.shape != BOX:  # round: turned however it likes, it looks the same from above
-        return Block(item.name, item.position_world, 0.0, item.size)
-    rotation = rotation_from_quaternion(*item.quaternion_world)
+    if item.shape in ROUND:
+        return Block(item.position_world, 0.0, item.size, item.name, item.shape)
+    rotation = rotation_from_quaternion(item.quaternion_world)
     vertical = int(np.argmax(np.abs(rotation[2])))
     lean = float(np.arccos(np.clip(abs(rotation[2, vertical]), -1.0, 1.0)))
     if lean > MAX_LEAN:
@@ -93,62 +117,54 @@ def block_from_object(item: SceneObject) -> Block:
     first, second = [axis for axis in range(3) if axis != vertical]
     yaw = wrap_line(float(np.arctan2(rotation[1, first], rotation[0, first])))
     size = (item.size[first], item.size[second], item.size[vertical])
-    return Block(item.name, item.position_world, yaw, size)
+    return Block(item.position_world, yaw, size, item.name, item.shape)
 
 
-@dataclass(frozen=True)
-class Grasp:
-    """How a hand that points down takes a block.
+def read_scene(graph: SceneGraph) -> Scene:
+    """The stacks of blocks that a scene graph describes.
 
-    Attributes:
-        yaw: direction of the fingers' motion, counter-clockwise from world x, in (-pi/2, pi/2].
-        width: extent of the block between the fingers [m].
-        depth: extent across the fingers [m].
-        height: of the tool centre point above the block's centre [m].
-        quarter_turned: whether the fingers close on the block's second horizontal axis.
+    Raises:
+        InvalidPlanError: if there are no bases, the relations describe no stacks, a block of the
+            relations is missing, or a block's pose cannot be used.
     """
-
-    yaw: float
-    width: float
-    depth: float
-    height: float
-    quarter_turned: bool
-
-
-def grasps(block: Block, tip_below_tcp: float, palm_above_tcp: float) -> list[Grasp]:
-    """The two ways to close the fingers on opposite faces, the one nearest to world x first.
-
-    The hand is long in the direction of its fingers, and the stacks stand along y: with the
-    fingers along x it does not sweep the neighbouring stacks.
-
-    Args:
-        tip_below_tcp: how far the fingertips reach below the tool centre point [m].
-        palm_above_tcp: how far above it the palm is [m].
-    """
-    half = block.size[2] / 2
-    # As near to the centre as the palm and what the block stands on allow (5 mm each).
-    height = min(max(0.0, half + 0.005 - palm_above_tcp), half)
-    height = max(height, tip_below_tcp + 0.005 - half)
-    along_x = Grasp(wrap_line(block.yaw), block.size[0], block.size[1], height, False)
-    along_y = Grasp(wrap_line(block.yaw + np.pi / 2), block.size[1], block.size[0], height, True)
-    # Among equals the first axis wins: a tie must not be decided by rounding.
-    return sorted((along_x, along_y), key=lambda grasp: round(abs(grasp.yaw), 3))
+    if not graph.places:
+        raise InvalidPlanError("the plan's scene has no bases")
+    places = tuple(sorted(graph.places, key=lambda place: place.index))
+    if [place.index for place in places] != list(range(len(places))):
+        raise InvalidPlanError("the bases of the plan's scene are not numbered from 0")
+    if not np.all(np.isfinite([place.position_world for place in places])):
+        raise InvalidPlanError("a base of the plan's scene has no finite position")
+    try:
+        names = graph.stacks()
+    except SceneGraphError as error:
+        raise InvalidPlanError(f"the plan's scene is inconsistent: {error}") from error
+    known = set(graph.names)
+    listed = {name for stack in names for name in stack}
+    for name in sorted(listed - known):
+        raise InvalidPlanError(f"{name} is missing from the plan's objects", object_name=name)
+    for name in sorted(known - listed):
+        raise InvalidPlanError(f"{name} stands on nothing in the plan's scene", object_name=name)
+    return Scene(
+        places,
+        tuple(tuple(block_from_object(graph.object(name)) for name in stack) for stack in names),
+    )
 
 
 def placed(
     block: Block,
-    grasp: Grasp,
+    yaw: float,
     base_world: tuple[float, float, float],
     support: Block | None,
     max_overhang: float,
 ) -> Block:
-    """The block after it was put onto a stack, with the fingers along world x.
+    """The block after it was put onto a stack.
 
     It goes to the middle of the place, so that errors of perception and grasping do not add up
     from block to block, but never farther than a share of the support's extent from the support's
     centre: a tower stands as long as each centre of mass is above the block below.
 
     Args:
+        yaw: of the block there, counter-clockwise from world x [rad].
         base_world: centre of the place on the table [m].
         support: the block it will stand on; None: the table.
         max_overhang: share of the support's horizontal extent, 0 to 0.5.
@@ -164,5 +180,4 @@ def placed(
             np.clip(y, support.position_world[1] - limit_y, support.position_world[1] + limit_y)
         )
         floor = support.top
-    yaw = np.pi / 2 if grasp.quarter_turned else 0.0
-    return block.moved((x, y, floor + block.size[2] / 2), yaw)
+    return replace(block, position_world=(x, y, floor + block.size[2] / 2), yaw=yaw)

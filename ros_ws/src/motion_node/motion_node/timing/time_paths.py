@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..path_problem import PhasePath
-from ..phases import HOME, Phase
+from ..phases import HOME, Phase, PhasePath
 from ..robots.joints import JointValues
 from .limits import JointLimits, shortest_duration, unit_spline
 from .trajectory import Interval, Trajectory

@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
+"""Boxes and spheres of the arm against its meshes."""
+
 from __future__ import annotations
 
 from pathlib import Path
@@ -11,57 +13,30 @@ from collision_oracle import CollisionOracle
 from motion_scenes import scene
 from numpy.typing import NDArray
 
-from motion_node.features import LEAN_ROWS, Feature, Features
-from motion_node.inverse_kinematics import InverseKinematics
-from motion_node.optimiser import MotionOptimiser
-from motion_node.phases import open_tool, read_scene
+from motion_node.blocks import read_scene
+from motion_node.constraints import AlongPath, Clearances, HandClearance, LinkClearance
+from motion_node.expand import expand
+from motion_node.planner import MotionPlanner
 from motion_node.robots import PANDA
 
 Array = NDArray[np.float64]
 
 
-def parameters_of(features: Features, which: str, rng: np.random.Generator) -> Array:
-    if which == "switch":
-        return rng.uniform(-0.5, 0.5, 3)
-    columns = read_scene(scene((3, 1, 2))).columns()
-    return features.mode(columns, open_tool(PANDA.gripper), 0.0, 0.015)
-
-
-@pytest.mark.parametrize("which", ["path", "switch"])
-def test_derivatives_match_finite_differences(features: Features, which: str) -> None:
-    feature: Feature = getattr(features, which)
-    rng = np.random.default_rng(1)
-    for _ in range(5):
-        q = np.array(PANDA.home) + rng.uniform(-0.4, 0.4, 7)
-        parameters = parameters_of(features, which, rng)
-        multipliers = rng.normal(size=feature.rows)
-        step = 1e-6
-        jacobian = np.array(feature.jacobian(q, parameters))
-        curvature = np.array(feature.curvature(q, parameters, multipliers))
-        for joint in range(7):
-            ahead, behind = q.copy(), q.copy()
-            ahead[joint] += step
-            behind[joint] -= step
-            values = [np.array(feature.value(x, parameters)).ravel() for x in (ahead, behind)]
-            slopes = [
-                multipliers @ np.array(feature.jacobian(x, parameters)) for x in (ahead, behind)
-            ]
-            difference = (values[0] - values[1]) / (2 * step)
-            np.testing.assert_allclose(jacobian[:, joint], difference, atol=1e-6)
-            difference = (slopes[0] - slopes[1]) / (2 * step)
-            np.testing.assert_allclose(curvature[:, joint], difference, atol=2e-3, rtol=1e-4)
-
-
 def test_clearance_is_never_larger_than_the_meshes_distance(
-    features: Features, optimiser: MotionOptimiser
+    planner: MotionPlanner,
 ) -> None:
     """The safe side: what counts as clear is clear, for postures in which the hand points down."""
     graph = scene((6, 0, 0))
     oracle = CollisionOracle(graph)
-    columns = read_scene(graph).columns()
-    mode = features.mode(columns, open_tool(PANDA.gripper), 0.0, 0.0)
-    names = features.path_names(open_tool(PANDA.gripper))
-    inverse = InverseKinematics(features, optimiser.lower, optimiser.upper)
+    settings = planner.settings
+    (phase,) = expand(read_scene(graph), [], PANDA.gripper, settings.phases, settings.squeeze)
+    way = AlongPath(PANDA, phase, Clearances(0.0, 0.0), settings.path, None, None)
+    clearances = [
+        (constraint.row_names(phase), constraint.rows(planner.model, 3).value, given[0])
+        for constraint in (HandClearance(PANDA), LinkClearance(PANDA))
+        for given in [constraint.along_path(way).parameters]
+    ]
+    inverse = planner.inverse
     links = {
         "hand": ("panda_hand", "panda_link7", "panda_leftfinger", "panda_rightfinger"),
         "wrist": ("panda_link6",),
@@ -77,9 +52,13 @@ def test_clearance_is_never_larger_than_the_meshes_distance(
         if np.abs(inverse.residual(q[None], point)).max() > 1e-3:
             continue
         oracle.set_joints(PANDA.joint_names, np.array([*q, 0.04, 0.04]))
-        gaps = np.array(features.path.value(q, mode)).ravel()
+        gaps = {
+            name: float(gap)
+            for names, function, parameters in clearances
+            for name, gap in zip(names, np.array(function(q, parameters)).ravel())
+        }
         for body, parts in links.items():
-            gap = min(g for g, name in zip(gaps, names) if name == f"clearance of {body} to stack0")
+            gap = gaps[f"clearance of {body} to stack0"]
             distance = min(
                 point[8]
                 for block in oracle.stacks[0]
@@ -127,11 +106,3 @@ def test_the_hands_box_covers_hand_and_flange() -> None:
         assert np.abs(vertices[:, 1]).max() < PANDA.gripper.hand_half[1] + 1e-3
         assert vertices[:, 2].min() > PANDA.gripper.hand_top - 1e-3
     assert hand[:, 2].max() <= PANDA.gripper.palm + 1e-3
-
-
-def test_rows_have_names(features: Features) -> None:
-    names = features.path_names(open_tool(PANDA.gripper))
-    assert len(names) == features.path.rows
-    assert names[features.tool_floor_row] == "clearance of hand to the table"
-    assert set(names[:LEAN_ROWS]) == {"tilt of the hand"}
-    assert "clearance of hand to stack1" in names

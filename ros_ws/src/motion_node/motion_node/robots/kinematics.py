@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import RobotDescriptionError
+from ..errors import RobotDescriptionError
 
 Array = NDArray[np.float64]
 
@@ -134,14 +134,11 @@ class Kinematics:
         """Velocity limits of q, shape (n,) [rad/s or m/s]."""
         return np.array([joint.velocity for joint in self.joints])
 
-    def world_from_links(self, q: ca.SX, links: Sequence[str]) -> dict[str, tuple[ca.SX, ca.SX]]:
+    def link_poses(self, q: ca.SX) -> Callable[[str], tuple[ca.SX, ca.SX]]:
         """Symbolic poses of links: name -> (rotation (3, 3), position (3, 1)) in the root frame.
 
         The root link of the description is the world frame. Shared parts of the chain are
-        evaluated once.
-
-        Raises:
-            RobotDescriptionError: if a link does not exist.
+        evaluated once. The function raises RobotDescriptionError if a link does not exist.
         """
         cache: dict[str, tuple[ca.SX, ca.SX]] = {}
 
@@ -150,8 +147,11 @@ class Kinematics:
                 cache[link] = self._pose_by_parent(link, q, pose)
             return cache[link]
 
-        self.check_links(links)
-        return {link: pose(link) for link in links}
+        def checked(link: str) -> tuple[ca.SX, ca.SX]:
+            self.check_links([link])
+            return pose(link)
+
+        return checked
 
     def check_links(self, links: Sequence[str]) -> None:
         """Raises RobotDescriptionError if a link does not exist."""
@@ -182,7 +182,7 @@ class Kinematics:
     def pose_function(self, link: str) -> ca.Function:
         """CasADi function q (n,) -> (rotation (3, 3), position (3,)) of a link in the world."""
         q = ca.SX.sym("q", len(self.joints))
-        rotation, position = self.world_from_links(q, [link])[link]
+        rotation, position = self.link_poses(q)(link)
         return ca.Function(f"world_from_{link}", [q], [ca.densify(rotation), ca.densify(position)])
 
 

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The bound P2 of 3.4: the switches of the whole sequence together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..constraints import Clearances
+from ..errors import KEYFRAMES
+from ..phases import Phase
+from ..robots.inverse_kinematics import InverseKinematics
+from .pose import Poses
+from .switches import SwitchProblems
+
+Array = NDArray[np.float64]
+
+
+class Keyframes:
+    """Solves P1 for each switch, then P2 from there."""
+
+    def __init__(self, problems: SwitchProblems, inverse: InverseKinematics) -> None:
+        self.problems = problems
+        self._poses = Poses(problems, inverse)
+
+    def solve(self, start: Array, phases: Sequence[Phase], clear: Clearances) -> Array:
+        """Configurations at the switches of all phases but the way home, shape (k, n) [rad].
+
+        Args:
+            start: configuration before the first phase, shape (n,) [rad].
+            phases: those that end with a switch.
+
+        Raises:
+            InfeasibleError: with bound ``pose`` where one switch alone has no solution, else with
+                ``keyframes``.
+        """
+        if not phases:
+            return np.zeros((0, self.problems.model.dimension))
+        demands = self.problems.demands(phases, clear)
+        poses = self._poses.solve(phases, demands)
+        solution = self.problems.solve(start, poses, demands)
+        if solution.feasible:
+            return solution.x[1:-1]
+        raise self.problems.error(KEYFRAMES, solution, phases)

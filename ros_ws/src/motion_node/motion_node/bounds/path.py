@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The bound P3: the full path through all phases (5.1), as k-order problems with k = 2.
+
+The path problem is one problem over all phases: squared accelerations are minimised subject to
+switch constraints h_switch and path constraints g_path. Because the velocity is zero at every
+switch and P2 has fixed the configurations there, no term of the sum reaches across a switch, and
+the problem falls apart into one problem a phase without loss. All phases share one structure, so
+it is built once, whatever the number of moves; ``phases`` > 1 builds the undivided problem.
+
+Each phase has ``steps`` intervals. The hand moves vertically during the first and the last
+``vertical`` of them, which makes it come from above and leave upwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..constraints import Clearances, Constraint
+from ..errors import PATH, InfeasibleError
+from ..nlp import Attached, Demand, DifferenceCost, KOrderProblem, Solution, SolverFactory
+from ..phases import Phase, PhasePath
+from ..robots.inverse_kinematics import InverseKinematics
+from ..robots.model import ArmModel
+from ..settings import PathSettings
+from .groups import grouped
+from .way import Way
+
+Array = NDArray[np.float64]
+
+#: Starting points in the order in which they are tried: how much higher than needed to pass over
+#: the stacks [m], and the share by which the way across is drawn towards the arm's base.
+_TRIES = ((0.0, 0.0), (0.08, 0.0), (0.04, 0.12), (0.15, 0.25))
+
+
+class PathProblem:
+    """Solves P3 phase by phase for one arm and number of stacks.
+
+    Args:
+        acceleration: acceleration limits, shape (n,) [rad/s²]; they weigh the joints.
+        phases: number of phases solved at once, between given switches.
+    """
+
+    def __init__(
+        self,
+        model: ArmModel,
+        stacks: int,
+        constraints: Sequence[Constraint],
+        inverse: InverseKinematics,
+        acceleration: Array,
+        settings: PathSettings,
+        solver: SolverFactory,
+        phases: int = 1,
+    ) -> None:
+        self._model, self._inverse, self._settings = model, inverse, settings
+        intervals = settings.steps
+        weights = (np.median(acceleration) / acceleration) ** 2 * intervals**3 / 10.0
+        steps = phases * intervals + 1
+        velocities = np.eye(steps)[1:] - np.eye(steps)[:-1]
+        own_steps = [constraint.path_steps(settings) for constraint in constraints]
+        self._groups = grouped(own_steps, constraints, model, stacks)
+        self._problem = KOrderProblem(
+            model.dimension,
+            steps,
+            fixed=[k * intervals for k in range(phases + 1)],
+            costs=[
+                DifferenceCost(_accelerations(phases, intervals), weights),
+                DifferenceCost(velocities, np.full(model.dimension, 0.01 * intervals)),
+            ],
+            attached=[
+                Attached(group.rows, tuple(k * intervals + s for k in range(phases) for s in own))
+                for own, group in self._groups
+            ],
+            solver=solver,
+        )
+
+    def solve(
+        self, phases: Sequence[Phase], configurations: Sequence[Array], clear: Clearances
+    ) -> list[PhasePath]:
+        """P3 for consecutive phases between given configurations at rest.
+
+        Args:
+            phases: as many as the problem was built for.
+            configurations: at their ends, one more than phases, each of shape (n,) [rad].
+
+        Raises:
+            InfeasibleError: with bound ``path``, naming the constraint that is violated most.
+        """
+        model, settings = self._model, self._settings
+        ways = [
+            Way(model, settings, phase, start, goal, clear)
+            for phase, start, goal in zip(phases, configurations, configurations[1:])
+        ]
+        demands = [
+            Demand.after_one_another([group.along_path(way.along, way.start_q) for way in ways])
+            for _, group in self._groups
+        ]
+        # Where the measured start is a little outside its limits, it may come back in its own time.
+        lower = np.minimum(model.lower, configurations[0])
+        upper = np.maximum(model.upper, configurations[0])
+        attempts = []
+        for higher, inwards in _TRIES:
+            guesses = [way.guess(self._inverse, higher, inwards) for way in ways]
+            x = np.vstack([guesses[0], *[guess[1:] for guess in guesses[1:]]])
+            solution = self._problem.solve(x, demands, lower, upper)
+            if solution.feasible:
+                ends = range(0, len(x), settings.steps)
+                return [
+                    PhasePath(phase, solution.x[a : b + 1])
+                    for phase, a, b in zip(phases, ends, ends[1:])
+                ]
+            attempts.append(solution)
+        raise self._error(phases, min(attempts, key=lambda item: item.violation))
+
+    def _error(self, phases: Sequence[Phase], solution: Solution) -> InfeasibleError:
+        found = [
+            (group.worst(own), len(steps))
+            for (steps, group), own in zip(self._groups, solution.violations)
+        ]
+        worst, steps_a_phase = max(found, key=lambda item: item[0].amount)
+        return worst.error(PATH, phases[worst.step // steps_a_phase])
+
+
+def _accelerations(phases: int, intervals: int) -> Array:
+    """Second differences over the steps of phases, each at rest at both ends.
+
+    By central differences: x_{-1} = x_1 and x_{T+1} = x_{T-1}, which stand for the prefix of 3.4.
+    """
+    result = np.zeros((phases * (intervals + 1), phases * intervals + 1))
+    for k in range(phases):
+        index = intervals - np.abs(intervals - np.abs(np.arange(-1, intervals + 2)))
+        index += k * intervals
+        for row in range(intervals + 1):
+            for offset, factor in enumerate((1.0, -2.0, 1.0)):
+                result[k * (intervals + 1) + row, index[row + offset]] += factor
+    return result

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The way through one phase: its vertical ends, and starting points for the path problem."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..constraints import AlongPath, Clearances, VerticalEnd, lowered
+from ..phases import Phase, Switch
+from ..robots.inverse_kinematics import InverseKinematics
+from ..robots.model import ArmModel
+from ..settings import PathSettings
+
+Array = NDArray[np.float64]
+
+#: Stacks nearer than this to the start have to be risen above first [m].
+NEAR_START = 0.15
+
+
+class Way:
+    """One phase between given configurations.
+
+    A phase that starts at a switch leaves it along a vertical line. One that starts anywhere else
+    (the first, and a way home after a stop) rises first if what hangs from the palm is not yet
+    above the stacks; clearances that do not hold at its start may not shrink.
+
+    Args:
+        start, goal: configurations at its ends, shape (n,) [rad].
+
+    Attributes:
+        along: what constraints are told of it.
+    """
+
+    def __init__(
+        self,
+        model: ArmModel,
+        shape: PathSettings,
+        phase: Phase,
+        start: Array,
+        goal: Array,
+        clear: Clearances,
+    ) -> None:
+        self._model, self._shape, self._phase, self._clear = model, shape, phase, clear
+        self.start_q, self._goal_q = start, goal
+        first = self._start_end()
+        last = self._switch_end(phase.switch) if phase.switch else None
+        self.along = AlongPath(model.arm, phase, clear, shape, first, last)
+
+    def _tool_bottom(self, tcp_height: float) -> float:
+        return tcp_height + self._model.arm.gripper.tcp_offset - self._phase.tool.bottom
+
+    def _switch_end(self, switch: Switch) -> VerticalEnd:
+        phase, clear = self._phase, self._clear
+        x, y, z = switch.position_world
+        columns = lowered(phase, switch, self._model.arm, clear)
+        above_own = phase.columns[switch.stack].top - self._tool_bottom(z) + clear.reserve + 0.002
+        lift = max(self._shape.lift, above_own)
+        return VerticalEnd(np.array([x, y, switch.yaw]), z, lift, columns)
+
+    def _start_end(self) -> VerticalEnd | None:
+        phase, reserve = self._phase, self._clear.reserve
+        if phase.start is not None:
+            return self._switch_end(phase.start)
+        (x, y, z), yaw = self._model.hand_at(self.start_q)
+        bottom = self._tool_bottom(z)
+        if bottom > max(column.top for column in phase.columns) + reserve:
+            return None
+        near = [
+            column.top
+            for column in phase.columns
+            if np.hypot(column.center[0] - x, column.center[1] - y) < NEAR_START
+        ]
+        lift = max([self._shape.lift, *[top - bottom + reserve for top in near]])
+        return VerticalEnd(np.array([x, y, yaw]), z, lift, phase.columns)
+
+    def guess(self, inverse: InverseKinematics, higher: float, inwards: float) -> Array:
+        """A starting point that goes up, across and down, shape (steps + 1, n) [rad].
+
+        Args:
+            higher: how much higher than needed to pass over the stacks [m].
+            inwards: share by which the way across is drawn towards the arm's base.
+        """
+        shape, phase = self._shape, self._phase
+        hanging = phase.tool.bottom - self._model.arm.gripper.tcp_offset
+        top = max(column.top for column in phase.columns)
+        across = top + hanging + self._clear.reserve + 0.01 + higher
+        share = 1.3 * shape.vertical / shape.steps
+        ends = (
+            (self.along.first, self.start_q, share),
+            (self.along.last, self._goal_q, 1 - share),
+        )
+        points, yaws, near, shares = [], [], [], [0.0]
+        for end, q, when in ends:
+            if end is None:
+                continue
+            points.append(end.reference * (1 - inwards))
+            points[-1][2] = max(across, end.height + end.lift)
+            yaws.append(self._model.hand_at(q)[1])
+            near.append(q)
+            shares.append(when)
+        between: list[Array] = []
+        if near:
+            between = list(inverse.solve(np.array(points), np.array(yaws), np.array(near)))
+        knots = [self.start_q, *between, self._goal_q]
+        shares.append(1.0)
+        at = np.linspace(0.0, 1.0, shape.steps + 1)
+        return np.column_stack([np.interp(at, shares, column) for column in np.array(knots).T])

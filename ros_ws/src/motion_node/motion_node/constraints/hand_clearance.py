@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The hand with what it holds keeps its distance to each stack."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import casadi as ca
+import numpy as np
+
+from scene_graph import base_name
+
+from ..nlp import Demand
+from ..phases import Phase
+from ..robots import Arm
+from ..robots.model import ArmModel
+from .constraint import Constraint
+from .hulls import COLUMN_SIZE, HAND_SIZE, HandBox, hand_parameters, split_columns
+from .situation import AlongPath, AtSwitch
+
+
+def hand_in_words(phase: Phase) -> str:
+    """The hand with what it holds."""
+    return f"hand with {phase.tool.held}" if phase.tool.held else "hand"
+
+
+class HandClearance(Constraint):
+    """Rows: gap to each stack less the margin [m].
+
+    Parameters: columns, the hand's box, height of the table, margin.
+    """
+
+    name = "hand_clearance"
+
+    def __init__(self, arm: Arm) -> None:
+        self._arm = arm
+
+    def parameter_count(self, stacks: int) -> int:
+        """See :class:`Constraint`."""
+        return COLUMN_SIZE * stacks + HAND_SIZE + 2
+
+    def expression(self, model: ArmModel, parameters: ca.SX, stacks: int) -> ca.SX:
+        """See the class."""
+        ends = np.cumsum([0, COLUMN_SIZE * stacks, HAND_SIZE, 1, 1]).tolist()
+        columns, box, floor, margin = ca.vertsplit(parameters, ends)
+        hand = HandBox(model, box)
+        return ca.vertcat(*[hand.gap(column, floor) - margin for column in split_columns(columns)])
+
+    def row_names(self, phase: Phase) -> Sequence[str]:
+        """See :class:`Constraint`."""
+        hand = hand_in_words(phase)
+        return [f"clearance of {hand} to {base_name(i)}" for i in range(len(phase.columns))]
+
+    def at_switch(self, moment: AtSwitch) -> Demand:
+        """Apart from all stacks, the switch's own where the hand does not mean to touch it."""
+        parameters = np.concatenate([moment.column_parameters, self._others(moment)])
+        count = len(moment.columns)
+        return Demand.constant(1, [0.0] * count, [np.inf] * count, parameters)
+
+    def along_path(self, way: AlongPath) -> Demand:
+        """Apart at each step."""
+        others = np.tile(self._others(way), (way.steps, 1))
+        lower = np.zeros((way.steps, len(way.phase.columns)))
+        parameters = np.hstack([way.column_parameters, others])
+        return Demand(parameters, lower, np.full_like(lower, np.inf))
+
+    def _others(self, where: AtSwitch | AlongPath) -> list[float]:
+        """The parameters behind the columns'."""
+        box = hand_parameters(self._arm.gripper, where.phase.tool)
+        return [*box, where.clear.floor, where.clear.margin]

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Smooth stand-ins for largest, smallest and absolute values, on the safe side.
+
+The largest of k gaps d_i is smoothed from below by
+
+    (1/s) log(sum_i exp(s d_i)) - log(k)/s  <=  max_i d_i,
+
+whose gradient never vanishes, so a solver finds the way out of any overlap. The smallest is
+smoothed from below likewise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import casadi as ca
+import numpy as np
+
+#: Sharpness s of the smooth maximum [1/m].
+SHARPNESS: Final = 150.0
+#: Of the smooth minimum over the spheres of a body [1/m].
+SHARPNESS_OF_BODIES: Final = 400.0
+#: What the safe side costs at most, where one of four gaps dominates: log(4)/s [m].
+SMOOTHING: Final = float(np.log(4.0)) / SHARPNESS
+
+
+def smooth_abs(value: ca.SX) -> ca.SX:
+    """From above, by at most 1 mm."""
+    return ca.sqrt(value * value + 1e-6)
+
+
+def smooth_max(values: Sequence[ca.SX]) -> ca.SX:
+    """From below; see the module."""
+    return (ca.logsumexp(SHARPNESS * ca.vertcat(*values)) - np.log(len(values))) / SHARPNESS
+
+
+def smooth_min(values: Sequence[ca.SX]) -> ca.SX:
+    """From below."""
+    return -ca.logsumexp(-SHARPNESS_OF_BODIES * ca.vertcat(*values)) / SHARPNESS_OF_BODIES

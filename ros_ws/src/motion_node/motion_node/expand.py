@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Moves to phases: each move (p, q) becomes a pick and a place with their modes (5.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from scene_graph import Move, Place, base_name, wrap_line
+
+from .blocks import Block, Scene, placed
+from .errors import InvalidPlanError
+from .grasps import Circumstances, Grasp, choose_grasp
+from .phases import HOME, PICK, PLACE, Phase, Switch, Tool
+from .robots import Gripper
+from .settings import PhaseSettings
+
+
+def open_tool(gripper: Gripper) -> Tool:
+    """The empty hand with its fingers fully open."""
+    return Tool(
+        half_x=gripper.finger_thickness,
+        half_y=gripper.finger_travel + gripper.finger_depth,
+        bottom=gripper.finger_tip,
+        finger=gripper.finger_travel,
+    )
+
+
+def _holding_tool(gripper: Gripper, block: Block, grasp: Grasp, squeeze: float) -> Tool:
+    below_tcp = block.size[2] / 2 + grasp.height
+    return Tool(
+        half_x=max(gripper.finger_thickness, grasp.depth / 2),
+        half_y=grasp.width / 2 + gripper.finger_depth,
+        bottom=max(gripper.finger_tip, gripper.tcp_offset + below_tcp),
+        held=block.name,
+        finger=max(0.0, grasp.width / 2 - squeeze),
+    )
+
+
+def expand(
+    scene: Scene,
+    moves: Sequence[Move],
+    gripper: Gripper,
+    settings: PhaseSettings,
+    squeeze: float,
+    object_names: Sequence[str] = (),
+) -> list[Phase]:
+    """The phases of a plan, the way home included: a^r_{1:K} = p(a^v_{1:K^v}) of 5.1.
+
+    Args:
+        squeeze: how much farther than the block's half width each finger is sent, so that the
+            fingers press [m].
+        object_names: the blocks that the plan believes it moves; checked where given.
+
+    Raises:
+        InvalidPlanError: if a move does not fit the scene; ``move`` is its index.
+    """
+    phases: list[Phase] = []
+    start: Switch | None = None
+    for index, move in enumerate(moves):
+        block = _taken(scene, index, move, object_names[index] if object_names else "")
+        source, target = move.source, move.target
+        circumstances = Circumstances(gripper, free_yaw(scene.places, source))
+        grasp = choose_grasp(block, circumstances, settings.max_grasp_width)
+        tool, holding = open_tool(gripper), _holding_tool(gripper, block, grasp, squeeze)
+        x, y, z = block.position_world
+        pick = Switch((x, y, z + grasp.height), grasp.yaw, source)
+        phases.append(
+            Phase(PICK, index, block.name, pick, start, tool, scene.columns, holding.finger, grasp)
+        )
+        scene = scene.without_top(source)
+        support = scene.stacks[target][-1] if scene.stacks[target] else None
+        base = scene.places[target].position_world
+        after = placed(block, grasp.placed_yaw, base, support, settings.max_overhang)
+        x, y, z = after.position_world
+        start = Switch((x, y, z + grasp.height + settings.place_gap), 0.0, target)
+        travel = gripper.finger_travel
+        phases.append(
+            Phase(PLACE, index, block.name, start, pick, holding, scene.columns, travel, grasp)
+        )
+        scene = scene.with_top(target, after)
+    tool, travel = open_tool(gripper), gripper.finger_travel
+    return [*phases, Phase(HOME, len(moves), "", None, start, tool, scene.columns, travel)]
+
+
+def _taken(scene: Scene, index: int, move: Move, expected: str) -> Block:
+    """The block that a move takes.
+
+    Raises:
+        InvalidPlanError: if the move does not fit the scene, or takes another than ``expected``.
+    """
+    count = len(scene.stacks)
+    for stack in (move.source, move.target):
+        if not 0 <= stack < count:
+            raise InvalidPlanError(
+                f"move {index} {move} names {base_name(stack)}; there are {count} stacks", index
+            )
+    if move.source == move.target:
+        raise InvalidPlanError(f"move {index} {move} ends where it starts", index)
+    place = base_name(move.source)
+    if not scene.stacks[move.source]:
+        raise InvalidPlanError(
+            f"move {index} {move} takes from {place}, which is empty by then", index
+        )
+    block = scene.stacks[move.source][-1]
+    if expected and expected != block.name:
+        raise InvalidPlanError(
+            f"move {index} {move} is said to take {expected}, but {block.name} is "
+            f"on top of {place} by then",
+            index,
+            expected,
+        )
+    return block
+
+
+def free_yaw(places: Sequence[Place], stack: int) -> float:
+    """Direction across the line from a place to its nearest neighbour, in (-pi/2, pi/2] [rad].
+
+    Along world x where there is no neighbour.
+    """
+    here = np.array(places[stack].position_world[:2])
+    others = [np.subtract(p.position_world[:2], here) for p in places if p.index != stack]
+    if not others:
+        return 0.0
+    dx, dy = min(others, key=lambda offset: float(np.hypot(*offset)))
+    return wrap_line(float(np.arctan2(dy, dx)) + np.pi / 2)
+
+
+def way_home(phases: Sequence[Phase], moves_done: int, gripper: Gripper) -> Phase:
+    """The way home after ``moves_done`` complete moves, from wherever the empty hand is.
+
+    The blocks stand as the phases predict; with none of the moves done, as they were seen.
+    """
+    following = [phase for phase in phases if phase.move >= moves_done]
+    first = following[0] if following else phases[-1]
+    tool = open_tool(gripper)
+    return replace(phases[-1], start=None, columns=first.columns, tool=tool, move=first.move)

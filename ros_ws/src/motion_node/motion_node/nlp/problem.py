@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The k-order Markov problem of equation 3.4 as one non-linear program.
+
+    min over x_{0:T}   sum_t f_t(x_{t-k:t})   s.t.   g_t(x_t) <= 0,  h_t(x_t) = 0
+
+Costs are squares of finite differences of configurations, so their Hessian is constant, banded and
+positive definite. Constraints are rows of single configurations, evaluated over all steps at
+once; equality and inequality differ only in their bounds, which are given anew for each solve. All
+three bounds of 3.4 are such problems: P1 has one configuration, P2 the switches with k = 1, P3 the
+path with k = 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from .program import TOLERANCE, Instance, Program
+from .rows import Demand, Rows
+from .solver import SolverFactory
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class DifferenceCost:
+    """A cost sum_r ||diag(sqrt(weights)) sum_t differences[r, t] x_t||^2.
+
+    Attributes:
+        differences: finite-difference operator over the steps, shape (r, steps).
+        weights: per joint, shape (n,).
+    """
+
+    differences: Array
+    weights: Array
+
+
+@dataclass(frozen=True)
+class Attached:
+    """Rows and the steps at which they are evaluated."""
+
+    rows: Rows
+    steps: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What came out of a solve.
+
+    Attributes:
+        x: configurations, fixed ones included, shape (steps, n).
+        cost: value of the cost up to the constant of the fixed configurations.
+        violations: for each attached part, shape (len(steps), rows) [m or rad].
+        solver: which solver found it.
+        iterations: how many it took.
+    """
+
+    x: Array
+    cost: float
+    violations: tuple[Array, ...]
+    solver: str
+    iterations: int
+
+    @property
+    def violation(self) -> float:
+        """Largest violation of all constraints [m or rad]."""
+        return max((float(v.max()) for v in self.violations if v.size), default=0.0)
+
+    @property
+    def feasible(self) -> bool:
+        """Whether all constraints hold; the point need not be optimal then."""
+        return self.violation <= TOLERANCE
+
+
+class KOrderProblem:
+    """A problem of fixed structure: built once, solved for many parameters.
+
+    Args:
+        dimension: n, number of joints.
+        steps: number of configurations, fixed ones included.
+        fixed: indices of the configurations that are given.
+        costs: the cost terms.
+        attached: the constraints.
+        solver: makes what solves it.
+    """
+
+    def __init__(
+        self,
+        dimension: int,
+        steps: int,
+        fixed: Sequence[int],
+        costs: Sequence[DifferenceCost],
+        attached: Sequence[Attached],
+        solver: SolverFactory,
+    ) -> None:
+        self.dimension, self.steps = dimension, steps
+        self.free = np.array([step for step in range(steps) if step not in set(fixed)])
+        self.fixed = np.array(sorted(set(fixed)), dtype=int)
+        self.attached = tuple(attached)
+        full = np.zeros((steps * dimension, steps * dimension))
+        for cost in costs:
+            gram = cost.differences.T @ cost.differences
+            full += 2.0 * np.kron(gram, np.diag(cost.weights))
+        free, fixed_rows = self._unknowns(self.free), self._unknowns(self.fixed)
+        self._hessian = full[np.ix_(free, free)]
+        self._coupling = full[np.ix_(free, fixed_rows)]
+        self._constant = full[np.ix_(fixed_rows, fixed_rows)]
+        self._solver = solver(self._program())
+
+    def _unknowns(self, steps: NDArray[np.int_]) -> NDArray[np.int_]:
+        return (steps[:, None] * self.dimension + np.arange(self.dimension)).ravel()
+
+    def _program(self) -> Program:
+        count, n = len(self.free), self.dimension
+        column = {int(step): index for index, step in enumerate(self.free)}
+        z = ca.MX.sym("z", count * n)
+        sizes = [len(item.steps) * item.rows.parameter_count for item in self.attached]
+        amounts = [len(item.steps) * item.rows.count for item in self.attached]
+        p = ca.MX.sym("p", count * n + sum(sizes))
+        linear, *flat = ca.vertsplit(p, np.cumsum([0, count * n, *sizes]).tolist())
+        by_step = ca.horzsplit(ca.reshape(z, n, count), 1)
+        values, jacobians = [ca.MX(0, 1)], [ca.MX(0, count * n)]
+        maps: list[tuple[Attached, list[int], ca.MX, ca.MX]] = []
+        for item, parameters in zip(self.attached, flat):
+            rows, amount = item.rows, len(item.steps)
+            columns = [column[step] for step in item.steps]
+            here = ca.horzcat(*[by_step[index] for index in columns])
+            given = ca.reshape(parameters, rows.parameter_count, amount)
+            maps.append((item, columns, here, given))
+            values.append(ca.vec(rows.value.map(amount)(here, given)))
+            slopes = ca.horzsplit(rows.jacobian.map(amount)(here, given), n)
+            for index, slope in zip(columns, slopes):
+                left = ca.MX(rows.count, index * n)
+                right = ca.MX(rows.count, (count - index - 1) * n)
+                jacobians.append(ca.horzcat(left, slope, right))
+        g: ca.MX = ca.vertcat(*values)
+        hessian = ca.sparsify(ca.DM(self._hessian))
+        cost = ca.mtimes(z.T, ca.mtimes(hessian, z)) / 2 + ca.dot(linear, z)
+
+        def make_curvature() -> ca.Function:
+            factor = ca.MX.sym("factor")
+            lam_g = ca.MX.sym("lam_g", sum(amounts))
+            multipliers = ca.vertsplit(lam_g, np.cumsum([0, *amounts]).tolist())
+            blocks = [ca.MX(n, n) for _ in range(count)]
+            for (item, columns, here, given), lam in zip(maps, multipliers):
+                amount = len(item.steps)
+                weights = ca.reshape(lam, item.rows.count, amount)
+                curvature = item.rows.curvature.map(amount)(here, given, weights)
+                for index, block in zip(columns, ca.horzsplit(curvature, n)):
+                    blocks[index] = blocks[index] + block
+            return ca.Function(
+                "nlp_hess_l",
+                [z, p, factor, lam_g],
+                [ca.triu(factor * hessian + ca.diagcat(*blocks))],
+                ["x", "p", "lam_f", "lam_g"],
+                ["triu_hess_gamma_x_x"],
+            )
+
+        jacobian = ca.Function(
+            "nlp_jac_g", [z, p], [g, ca.vertcat(*jacobians)], ["x", "p"], ["g", "jac_g_x"]
+        )
+        return Program(z, p, cost, g, self._hessian, jacobian, make_curvature)
+
+    def solve(self, x: Array, demands: Sequence[Demand], lower: Array, upper: Array) -> Solution:
+        """Solves from a starting point; the solution may be infeasible, and says so.
+
+        Args:
+            x: shape (steps, n): the given configurations, and the starting point of the others.
+            demands: one for each attached part.
+            lower, upper: joint limits, broadcast to (steps, n) [rad].
+        """
+        shape = (self.steps, self.dimension)
+        given = x[self.fixed].ravel()
+        instance = Instance(
+            start=np.clip(x, lower, upper)[self.free].ravel(),
+            linear=self._coupling @ given,
+            parameters=_flat([demand.parameters for demand in demands]),
+            lower_z=np.broadcast_to(lower, shape)[self.free].ravel(),
+            upper_z=np.broadcast_to(upper, shape)[self.free].ravel(),
+            lower_g=_flat([demand.lower for demand in demands]),
+            upper_g=_flat([demand.upper for demand in demands]),
+        )
+        found = self._solver.solve(instance)
+        z = found.z
+        solved = np.array(x, dtype=float)
+        solved[self.free] = z.reshape(-1, self.dimension)
+        ends = np.cumsum([demand.lower.size for demand in demands])[:-1]
+        parts = np.split(instance.excess(found.values), ends)
+        constant = float(given @ self._constant @ given) / 2
+        return Solution(
+            x=solved,
+            cost=float(z @ self._hessian @ z / 2 + instance.linear @ z) + constant,
+            violations=tuple(part.reshape(d.lower.shape) for part, d in zip(parts, demands)),
+            solver=found.solver,
+            iterations=found.iterations,
+        )
+
+
+def _flat(arrays: Sequence[Array]) -> Array:
+    return np.concatenate([np.zeros(0), *[array.ravel() for array in arrays]])

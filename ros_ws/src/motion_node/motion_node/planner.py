@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a scene, moves and the arm's state to a trajectory: P1, P2, then P3, then times."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scene_graph import Move, SceneGraph
+
+from .blocks import read_scene
+from .bounds import Keyframes, PathProblem, SwitchProblems, check_widths
+from .constraints import Clearances, Constraint, default_constraints
+from .errors import CancelledError
+from .expand import expand, way_home
+from .nlp import SOLVERS
+from .phases import HOME, Phase, PhasePath
+from .robots import PANDA, Arm
+from .robots.inverse_kinematics import InverseKinematics
+from .robots.model import ArmModel
+from .settings import Settings
+from .timing.limits import JointLimits
+from .timing.time_paths import time_paths
+from .timing.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A plan as a motion.
+
+    Attributes:
+        phases: the phases in order, the way home last.
+        paths: their paths.
+        trajectory: the paths in time.
+        floor: height of the table [m].
+        seconds: wall time that finding it took [s].
+    """
+
+    phases: tuple[Phase, ...]
+    paths: tuple[PhasePath, ...]
+    trajectory: Trajectory
+    floor: float
+    seconds: float
+
+
+class MotionPlanner:
+    """The motion problem of 5.1 for one arm; usable without ROS.
+
+    >>> planner = MotionPlanner(urdf_text)                               # doctest: +SKIP
+    >>> motion = planner.solve(graph, [Move(0, 2)], q, fingers)          # doctest: +SKIP
+
+    Args:
+        description: the URDF's text.
+        constraints: what motions have to keep to; :func:`default_constraints` if not given.
+
+    Attributes:
+        model: the arm with its URDF.
+        inverse: its inverse kinematics.
+        timing: may be changed between plans.
+
+    Raises:
+        RobotDescriptionError: if the description lacks a joint or link of ``arm``.
+        ValueError: if there is no solver of the settings' name.
+    """
+
+    def __init__(
+        self,
+        description: str,
+        arm: Arm = PANDA,
+        settings: Settings | None = None,
+        constraints: Sequence[Constraint] | None = None,
+    ) -> None:
+        self.arm = arm
+        self.settings = settings or Settings()
+        if self.settings.solver not in SOLVERS:
+            raise ValueError(
+                f"there is no solver {self.settings.solver!r}; there is {', '.join(SOLVERS)}"
+            )
+        self._solver = SOLVERS[self.settings.solver]
+        self.model = ArmModel(description, arm, self.settings.limit_margin)
+        self.inverse = InverseKinematics(self.model)
+        chosen = default_constraints(arm) if constraints is None else constraints
+        self.constraints = tuple(chosen)
+        self.limits = JointLimits(self.model.kinematics.velocity, np.array(arm.acceleration))
+        self.timing = self.settings.timing
+        self._bounds: dict[int, tuple[Keyframes, PathProblem]] = {}
+
+    def prepare(self, stacks: int, moves: int = 0) -> tuple[Keyframes, PathProblem]:
+        """Builds the problems for a number of stacks, and P2 for a number of moves, once."""
+        if stacks not in self._bounds:
+            problems = SwitchProblems(self.model, stacks, self.constraints, self._solver)
+            path = self.path_problem(stacks)
+            self._bounds[stacks] = (Keyframes(problems, self.inverse), path)
+        keyframes, path = self._bounds[stacks]
+        if moves:
+            keyframes.problems.problem(2 * moves)
+        return keyframes, path
+
+    def path_problem(self, stacks: int, phases: int = 1) -> PathProblem:
+        """P3 for a number of stacks, over one phase or several that are solved at once."""
+        return PathProblem(
+            self.model,
+            stacks,
+            self.constraints,
+            self.inverse,
+            self.limits.acceleration,
+            self.settings.path,
+            self._solver,
+            phases,
+        )
+
+    def solve(
+        self,
+        graph: SceneGraph,
+        moves: Sequence[Move],
+        arm: Array,
+        fingers: Array,
+        object_names: Sequence[str] = (),
+        cancelled: Callable[[], bool] = lambda: False,
+    ) -> Motion:
+        """The trajectory that carries out moves in a scene, and goes home.
+
+        Args:
+            arm: present configuration, shape (n,) [rad]; at rest.
+            fingers: present finger positions, shape (2,) [m].
+            object_names: the blocks the plan believes it moves, one a move, or none.
+            cancelled: polled between problems.
+
+        Raises:
+            InvalidPlanError: if the moves do not fit the scene.
+            InfeasibleError: if a bound has no solution.
+            CancelledError: if ``cancelled`` said so.
+        """
+        begin = time.perf_counter()
+        scene, settings = read_scene(graph), self.settings
+        phases = expand(
+            scene, moves, self.arm.gripper, settings.phases, settings.squeeze, object_names
+        )
+        return self._solve(phases, scene.floor, arm, fingers, cancelled, begin)
+
+    def solve_way_home(self, motion: Motion, moves_done: int, arm: Array, fingers: Array) -> Motion:
+        """The way home of an empty hand in the middle of a plan: open, rise, go home.
+
+        Raises:
+            InfeasibleError: if the path has no solution.
+        """
+        begin = time.perf_counter()
+        home = way_home(motion.phases, moves_done, self.arm.gripper)
+        return self._solve([home], motion.floor, arm, fingers, lambda: False, begin)
+
+    def _solve(
+        self,
+        phases: Sequence[Phase],
+        floor: float,
+        arm: Array,
+        fingers: Array,
+        cancelled: Callable[[], bool],
+        begin: float,
+    ) -> Motion:
+        def check() -> None:
+            if cancelled():
+                raise CancelledError("stopped on request while planning the motion")
+
+        check()
+        check_widths(phases, self.settings.phases.max_grasp_width)
+        keyframes, problem = self.prepare(len(phases[0].columns))
+        clear = Clearances(self.settings.path.margin, floor)
+        switching = [phase for phase in phases if phase.kind != HOME]
+        configurations = [arm, *keyframes.solve(arm, switching, clear), self.model.home]
+        paths: list[PhasePath] = []
+        for phase, start, goal in zip(phases, configurations, configurations[1:]):
+            check()
+            paths += problem.solve([phase], [start, goal], clear)
+        check()
+        trajectory = time_paths(
+            paths, self.limits, self.timing, fingers, self.arm.gripper.finger_travel
+        )
+        return Motion(tuple(phases), tuple(paths), trajectory, floor, time.perf_counter() - begin)

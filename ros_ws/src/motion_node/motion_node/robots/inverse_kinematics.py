@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Damped Gauss-Newton inverse kinematics for a hand that points down, for many poses at once.
+
+It only makes starting points; the bounds of :mod:`motion_node.bounds` decide what is feasible.
+"""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from .model import FREEDOMS_OF_A_POSE, HAND_ROWS, POSITION_ROWS, ArmModel
+
+Array = NDArray[np.float64]
+
+
+class InverseKinematics:
+    """Configurations for poses of a downward hand, near given configurations."""
+
+    def __init__(self, model: ArmModel) -> None:
+        self._model = model
+        self._maps: dict[int, ca.Function] = {}
+
+    def _hands(self, q: Array) -> tuple[Array, Array]:
+        """Rows (k, HAND_ROWS) and Jacobians (k, HAND_ROWS, n) at configurations (k, n)."""
+        count = len(q)
+        if count not in self._maps:
+            self._maps[count] = self._model.hand.map(count)
+        rows, jacobians = self._maps[count](q.T)
+        by_row = np.array(jacobians).reshape(HAND_ROWS, count, -1)
+        return np.array(rows).T, by_row.transpose(1, 0, 2)
+
+    def solve(
+        self, positions_world: Array, yaws: Array, near: Array, iterations: int = 25
+    ) -> Array:
+        """Configurations (k, n) that put the tool centre point at ``positions_world`` (k, 3) [m].
+
+        The hand points down with its fingers along ``yaws`` (k,) [rad]. Each configuration is
+        the projection of ``near`` (k, n) or (n,) onto the poses, so the elbow stays where it was.
+        Poses out of reach yield the nearest configuration found.
+        """
+        positions = np.atleast_2d(positions_world)
+        model, count = self._model, len(positions)
+        q = np.array(np.broadcast_to(near, (count, model.dimension)), dtype=float)
+        zeros = np.zeros(count)
+        target = np.column_stack([positions, zeros, zeros, np.cos(yaws), np.sin(yaws)])
+        for _ in range(iterations):
+            rows, jacobian = self._hands(q)
+            residual = rows - target
+            if np.abs(residual).max() < 1e-6:
+                break
+            gram = jacobian @ jacobian.transpose(0, 2, 1) + 1e-5 * np.eye(HAND_ROWS)
+            step = jacobian.transpose(0, 2, 1) @ np.linalg.solve(gram, residual[:, :, None])
+            q = np.clip(q - np.clip(step[:, :, 0], -0.5, 0.5), model.lower, model.upper)
+        return q
+
+    def residual(self, q: Array, positions_world: Array) -> Array:
+        """Tool centre points at configurations (k, n) less positions, shape (k, 3) [m]."""
+        rows, _ = self._hands(q)
+        return np.asarray(rows[:, :POSITION_ROWS] - positions_world)
+
+    def self_motion(self, q: Array) -> Array:
+        """Unit directions (k, n) in which configurations (k, n) move without moving the hand.
+
+        An arm with one joint more than a pose asks for has one such direction, in which its elbow
+        swings about the line from shoulder to wrist; the first joint's share is made positive.
+        Zero for an arm without spare joints.
+        """
+        if self._model.dimension <= FREEDOMS_OF_A_POSE:
+            return np.zeros_like(q)
+        _, jacobian = self._hands(q)
+        direction = np.linalg.svd(jacobian)[2][:, -1]
+        return np.asarray(direction * np.where(direction[:, :1] < 0, -1.0, 1.0))
