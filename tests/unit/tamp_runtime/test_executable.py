@@ -15,6 +15,18 @@ import pytest
 PACKAGES = [path.parent.name for path in Path(__file__).parents[3].glob("ros_ws/src/*/setup.py")]
 #: What takes long to import.
 HEAVY = ("rclpy", "numpy", "torch", "casadi", "pybullet", "matplotlib")
+#: As some libraries do, it survives what is raised while it is imported.
+SLOW_PROGRAM = """
+import time
+print("importing", flush=True)
+try:
+    time.sleep(1000.0)
+except KeyboardInterrupt:
+    pass
+
+def run():
+    return 3
+"""
 
 
 def scripts(package: str) -> dict[str, str]:
@@ -44,9 +56,7 @@ def test_every_executable_starts_in_a_module_that_is_there_at_once(package: str)
 def test_sigint_while_the_program_is_imported_ends_it_with_the_code_for_that(
     tmp_path: Path, ignored: bool
 ) -> None:
-    (tmp_path / "slow_program.py").write_text(
-        "import time\nprint('importing', flush=True)\ntime.sleep(1000.0)\n"
-    )
+    (tmp_path / "slow_program.py").write_text(SLOW_PROGRAM)
     action = signal.SIG_IGN if ignored else signal.SIG_DFL
     process = subprocess.Popen(
         [

@@ -7,7 +7,9 @@ Imports nothing heavy itself, so that Ctrl-C while the imports run ends the proc
 from __future__ import annotations
 
 import importlib
+import os
 import signal
+from types import FrameType
 
 
 def run_module(name: str, function: str = "run", stopped: int = 0) -> int:
@@ -16,9 +18,17 @@ def run_module(name: str, function: str = "run", stopped: int = 0) -> int:
     Args:
         stopped: the exit code if SIGINT arrives before the function handles it.
     """
+
+    def end(_number: int, _frame: FrameType | None) -> None:
+        os._exit(stopped)
+
+    # At once, since there is nothing to tidy up yet: a KeyboardInterrupt in the middle of an import
+    # is swallowed by some library, one in fifty, or leaves a module behind that is half there.
+    signal.signal(signal.SIGINT, end)
+    module = importlib.import_module(name)
     listen_to_interrupts()
     try:
-        code: int = getattr(importlib.import_module(name), function)()
+        code: int = getattr(module, function)()
     except KeyboardInterrupt:  # stopped before there was anything to stop
         return stopped
     return code

@@ -74,7 +74,8 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
         node = make_node()
         executor.add_node(node)
         interrupts.awaited = False
-        _spin(executor, node)
+        if not interrupts.arrived:  # some library may have swallowed the exception
+            _spin(executor, node)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except Exception as error:
@@ -107,8 +108,10 @@ class _Interrupts:
 
     def __init__(self) -> None:
         self.awaited = True
+        self.arrived = False
 
     def __call__(self, _number: int, _frame: FrameType | None) -> None:
+        self.arrived = True
         if self.awaited:
             raise KeyboardInterrupt
 
