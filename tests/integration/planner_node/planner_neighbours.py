@@ -43,7 +43,7 @@ def scene_message(stacks: Stacks, stamp: Any, **fields: Any) -> SceneGraph:
             SceneObject(name=name, color=name.split("_")[0], shape=name.split("_")[1])
             for name in names
         ],
-        relations=relations_to_messages(up_relations(stacks)),
+        relations=fields.pop("relations", relations_to_messages(up_relations(stacks))),
         bases=[Base(index=i, position=Point(x=0.1 * i)) for i in range(len(stacks))],
         confidence=fields.pop("confidence", 0.9),
         **fields,
@@ -144,20 +144,8 @@ class FakeMotion(Node):
 
 def obey(motion: FakeMotion, plan: SymbolicPlan) -> None:
     """Everything goes well."""
-    carry_out(motion, plan, len(plan.moves))
-    motion.report(
-        plan.plan_id,
-        MotionStatus.SUCCEEDED,
-        moves_done=len(plan.moves),
-        moves_total=len(plan.moves),
-        progress=1.0,
-        optimisation_seconds=0.01,
-    )
-
-
-def carry_out(motion: FakeMotion, plan: SymbolicPlan, count: int) -> None:
     motion.report(plan.plan_id, MotionStatus.OPTIMISING, message="optimising")
-    for index, move in enumerate(plan.moves[:count]):
+    for index, move in enumerate(plan.moves):
         motion.world.carry_out(Move(move.source, move.target))
         motion.report(
             plan.plan_id,
@@ -169,42 +157,14 @@ def carry_out(motion: FakeMotion, plan: SymbolicPlan, count: int) -> None:
             phase="place",
             progress=(index + 1) / len(plan.moves),
         )
-
-
-def fail(reason: int, message: str, after: int = 0) -> Behaviour:
-    """Fails for a reason after some moves."""
-
-    def behaviour(motion: FakeMotion, plan: SymbolicPlan) -> None:
-        carry_out(motion, plan, after)
-        motion.report(
-            plan.plan_id,
-            MotionStatus.FAILED,
-            reason=reason,
-            message=message,
-            moves_done=after,
-            moves_total=len(plan.moves),
-        )
-
-    return behaviour
-
-
-def knock(stacks: Stacks) -> Behaviour:
-    """Succeeds, but afterwards the world is another one."""
-
-    def behaviour(motion: FakeMotion, plan: SymbolicPlan) -> None:
-        carry_out(motion, plan, len(plan.moves))
-        motion.world.stacks = stacks
-        motion.report(plan.plan_id, MotionStatus.SUCCEEDED, moves_done=len(plan.moves))
-
-    return behaviour
-
-
-def ignore(_motion: FakeMotion, _plan: SymbolicPlan) -> None:
-    """Does not answer at all."""
-
-
-def take_up_and_die(motion: FakeMotion, plan: SymbolicPlan) -> None:
-    motion.report(plan.plan_id, MotionStatus.EXECUTING)
+    motion.report(
+        plan.plan_id,
+        MotionStatus.SUCCEEDED,
+        moves_done=len(plan.moves),
+        moves_total=len(plan.moves),
+        progress=1.0,
+        optimisation_seconds=0.01,
+    )
 
 
 def run_until_stopped(motion: FakeMotion, plan: SymbolicPlan) -> None:

@@ -23,7 +23,16 @@ from planner_node.loop import (
     Stage,
 )
 from planner_node.settings import Settings
-from scene_graph import Move, Place, SceneGraph, SceneObject, Stacks, apply_move, up_relations
+from scene_graph import (
+    Move,
+    Place,
+    SceneGraph,
+    SceneObject,
+    Stacks,
+    apply_move,
+    split_object_name,
+    up_relations,
+)
 
 START: Stacks = (("red_box", "blue_box"), ("green_box",), ())
 GOAL = "red on green, blue on red"
@@ -53,7 +62,7 @@ def sighting_of(stacks: Stacks, stamp: int = 0, **fields: Any) -> Sighting:
     """What perception reports of a state; ``fields`` are those of Sighting."""
     names = sorted(name for stack in stacks for name in stack)
     graph = SceneGraph(
-        tuple(SceneObject(name, *name.split("_"), size=(0.05, 0.05, 0.05)) for name in names),
+        tuple(SceneObject(name, *split_object_name(name)) for name in names),
         up_relations(stacks),
         tuple(Place(index, (0.0, 0.1 * index, 0.0)) for index in range(len(stacks))),
         confidence=fields.pop("confidence", 0.9),

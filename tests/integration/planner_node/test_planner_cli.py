@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the commands print and return, with a client that needs no planner."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from builtin_interfaces.msg import Time
+from PIL import Image
+from planner_neighbours import scene_message
+from sensor_msgs.msg import Image as ImageMsg
+from tamp_interfaces.action import AchieveGoal
+from tamp_interfaces.msg import MotionStatus, Move, SymbolicPlan
+from tamp_interfaces.srv import PlanToGoal
+
+from planner_node.cli import commands
+from planner_node.cli.goal_image import ImageFileError, read_goal_image
+from planner_node.cli.plan_text import describe_plan, describe_scene
+from planner_node.cli.progress import ProgressPrinter
+
+Result = AchieveGoal.Result
+Feedback = AchieveGoal.Feedback
+
+PLAN = SymbolicPlan(
+    plan_id="abc",
+    initial=scene_message((("red_box",), ()), Time()),
+    moves=[Move(source=0, target=1, object_name="red_box")],
+)
+STATES = [scene_message(((), ("red_box",)), Time())]
+
+
+class FakePlanner:
+    """A client whose goal ends with ``result`` as soon as it is cancelled, or at once.
+
+    Attributes:
+        seconds: how long each look at the goal takes.
+        interrupt: Ctrl-C comes while the goal is worked on.
+    """
+
+    def __init__(self) -> None:
+        self.answer = PlanToGoal.Response()
+        self.final = Result()
+        self.ends_by_itself = True
+        self.interrupt = False
+        self.cancels = 0
+        self.asked: dict[str, Any] = {}
+        self.now = 0.0
+
+    def __enter__(self) -> FakePlanner:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def plan(self, goal: str, **arguments: Any) -> PlanToGoal.Response:
+        self.asked = {"goal": goal, **arguments}
+        return self.answer
+
+    def start(self, goal: str, **arguments: Any) -> None:
+        self.asked = {"goal": goal, **arguments}
+
+    def next_feedback(self, timeout: float) -> None:
+        self.now += timeout
+        if self.interrupt:
+            self.interrupt = False
+            raise KeyboardInterrupt
+
+    def is_done(self) -> bool:
+        return self.ends_by_itself or self.cancels > 0
+
+    def cancel(self) -> None:
+        self.cancels += 1
+
+    def result(self, timeout: float) -> AchieveGoal.Result:
+        del timeout
+        return self.final
+
+
+@pytest.fixture
+def planner(monkeypatch: pytest.MonkeyPatch) -> FakePlanner:
+    fake = FakePlanner()
+    monkeypatch.setattr(commands, "PlannerClient", lambda: fake)
+    monkeypatch.setattr(commands, "_init", lambda _arguments: None)
+    monkeypatch.setattr(commands.time, "monotonic", lambda: fake.now)
+    return fake
+
+
+def test_a_plan_is_asked_for_as_it_was_typed(
+    planner: FakePlanner, capsys: pytest.CaptureFixture[str]
+) -> None:
+    planner.answer = PlanToGoal.Response(
+        message="1 move", plan=PLAN, states=STATES, expanded=7, planning_seconds=0.25
+    )
+    assert commands.plan_to_goal(["plan_to_goal", "red on stack1", "--execute"]) == 0
+    assert (planner.asked["goal"], planner.asked["execute"]) == ("red on stack1", True)
+    assert capsys.readouterr().out.splitlines() == [
+        "1 move",
+        "       start    [red_box | -]",
+        "(0, 1) red_box  [- | red_box]",
+        "7 states expanded in 0.250 s",
+    ]
+
+
+def test_a_refused_goal_is_explained(
+    planner: FakePlanner, capsys: pytest.CaptureFixture[str]
+) -> None:
+    planner.answer = PlanToGoal.Response(status=Result.UNKNOWN_OBJECT, message="there is blue_box")
+    assert commands.plan_to_goal(["plan_to_goal", "red on purple"]) == 1
+    assert capsys.readouterr() == ("", "plan_to_goal: there is blue_box\n")
+
+
+@pytest.mark.parametrize("status", [Result.SUCCESS, Result.ALREADY_TRUE])
+def test_an_achieved_goal_is_told_with_its_times(
+    planner: FakePlanner, capsys: pytest.CaptureFixture[str], status: int
+) -> None:
+    planner.final = Result(status=status, message="confirmed", moves_executed=3, plan_seconds=0.5)
+    assert commands.achieve_goal(["achieve_goal", "red on blue"]) == 0
+    first, second = capsys.readouterr().out.splitlines()
+    assert first == "confirmed"
+    assert second.startswith("3 moves, 0 replans;")
+    assert "plan 0.500 s" in second
+
+
+def test_a_failed_goal_names_the_module(
+    planner: FakePlanner, capsys: pytest.CaptureFixture[str]
+) -> None:
+    planner.final = Result(status=Result.UNREACHABLE, message="no way", module="planner")
+    assert commands.achieve_goal(["achieve_goal", "red on blue"]) == 1
+    assert capsys.readouterr().err == "achieve_goal [planner]: no way\n"
+
+
+@pytest.mark.parametrize(
+    ("interrupt", "code", "sentence"),
+    [(False, 1, "not done after 12 s"), (True, 130, "waiting until the arm rests")],
+)
+def test_a_goal_that_is_given_up_is_cancelled(
+    planner: FakePlanner,
+    capsys: pytest.CaptureFixture[str],
+    interrupt: bool,
+    code: int,
+    sentence: str,
+) -> None:
+    planner.ends_by_itself, planner.interrupt = False, interrupt
+    planner.final = Result(status=Result.CANCELLED, message="cancelled; all is down")
+    assert commands.achieve_goal(["achieve_goal", "red on blue", "--timeout", "12"]) == code
+    assert planner.cancels == 1
+    error = capsys.readouterr().err
+    assert sentence in error
+    assert "all is down" in error
+
+
+def save(path: Path, pixels: Any) -> Path:
+    Image.fromarray(pixels).save(path)
+    return path
+
+
+def test_goal_images_are_read_from_files(planner: FakePlanner, tmp_path: Path) -> None:
+    colors = save(tmp_path / "goal.png", np.full((4, 6, 3), 7, np.uint8))
+    labels = save(tmp_path / "labels.png", np.full((4, 6), 300, np.uint16))
+    images = ("--goal-image", str(colors), "--goal-segmentation", str(labels))
+    assert commands.plan_to_goal(["plan_to_goal", *images]) == 0
+    image: ImageMsg = planner.asked["goal_image"]
+    segmentation: ImageMsg = planner.asked["goal_segmentation"]
+    assert (image.encoding, image.width, image.height) == ("rgb8", 6, 4)
+    assert set(image.data) == {7}
+    assert segmentation.encoding == "16UC1"
+    assert segmentation.data[:2].tobytes() == (300).to_bytes(2, "little")
+
+
+def test_labels_in_colour_are_no_labels(tmp_path: Path) -> None:
+    picture = save(tmp_path / "goal.png", np.zeros((4, 6, 3), np.uint8))
+    with pytest.raises(ImageFileError, match="not an image of labels"):
+        read_goal_image(picture, picture)
+
+
+@pytest.mark.parametrize("command", [commands.plan_to_goal, commands.achieve_goal])
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("--goal-image", "x.png"), "belong together"),
+        (("--goal-image", "x.png", "--goal-segmentation", "y.png"), "cannot read"),
+        ((), "give a goal"),
+        (("red on blue", "--timeout", "soon"), "--timeout"),
+    ],
+)
+def test_bad_arguments_are_refused(
+    capsys: pytest.CaptureFixture[str],
+    command: Callable[[list[str]], int],
+    arguments: tuple[str, ...],
+    sentence: str,
+) -> None:
+    with pytest.raises(SystemExit) as caught:
+        command(["command", *arguments])
+    assert caught.value.code == 2
+    assert sentence in capsys.readouterr().err
+
+
+def test_a_scene_without_stacks_is_told_by_its_relations() -> None:
+    message = scene_message((("red_box",), ("blue_box",)), Time())
+    message.relations = message.relations[:1]
+    message.relations[0].object = "red_box"
+    assert describe_scene(message) == "blue_box up red_box"
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def moving(progress: float, phase: str = "pick") -> AchieveGoal.Feedback:
+    motion = MotionStatus(
+        state=MotionStatus.EXECUTING,
+        moves_total=1,
+        phase=phase,
+        object_name="red_box",
+        progress=progress,
+    )
+    return Feedback(stage=Feedback.EXECUTING, motion=motion, plan=PLAN, states=STATES)
+
+
+def test_progress_prints_what_is_new() -> None:
+    stream = io.StringIO()
+    printer = ProgressPrinter(stream)
+    for _ in range(2):
+        printer.show(Feedback(stage=Feedback.PERCEIVING, message="reading the goal"))
+    for progress in (0.1, 0.2):
+        printer.show(moving(progress))
+    printer.show(moving(0.3, "place"))
+    printer.finish()
+    assert stream.getvalue().splitlines() == [
+        "perceive  reading the goal",
+        "execute   move 1 of 1: pick red_box",
+        *[f"{'':9} {line}" for line in describe_plan(PLAN, STATES)],
+        "execute   move 1 of 1: place red_box",
+    ]
+
+
+def test_a_terminal_gets_a_bar_that_makes_room_for_the_next_line() -> None:
+    stream = Terminal()
+    printer = ProgressPrinter(stream)
+    printer.show(moving(0.5))
+    assert stream.getvalue().endswith("[###############---------------]  50%")
+    printer.finish()
+    assert stream.getvalue().endswith("\r\033[K")
