@@ -21,8 +21,8 @@ from tamp_runtime.messages.scene_graph import graph_from_message
 from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from sim_node.arm_models import PANDA
 from sim_node.node import SimNode
+from sim_node.simulated_arms import PANDA
 
 HOME = PANDA.home_positions
 JOINTS = PANDA.joints

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from sim_node.arm_models import PANDA
 from sim_node.controller import ArmController
+from sim_node.simulated_arms import PANDA
 from sim_node.trajectory import TrajectoryError
 from sim_node.world import World
 

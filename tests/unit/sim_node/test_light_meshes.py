@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation, maximum_filter, minimum_filter
 
 from sim_node import world as world_module
-from sim_node.arm_models import PANDA
 from sim_node.camera import Frame
 from sim_node.meshes.light_urdf import light_urdf
 from sim_node.meshes.wavefront import read_obj
+from sim_node.simulated_arms import PANDA
 from sim_node.world import World
 
 LAYOUT = (("red_box", "blue_cylinder"), ("green_box", "yellow_box"), ("purple_sphere",))

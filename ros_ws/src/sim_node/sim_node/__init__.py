@@ -12,15 +12,11 @@ What a notebook needs stands here; none of it knows ROS::
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from tamp_runtime.public_face import exported_by
 
 if TYPE_CHECKING:
     from .public import *  # noqa: F403
 
-
-def __getattr__(name: str) -> Any:
-    # Imported when it is first asked for: an executable listens to Ctrl-C before such imports.
-    if name.startswith("_") and name != "__all__":
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(".public", __name__), name)
+__getattr__ = exported_by(__name__)

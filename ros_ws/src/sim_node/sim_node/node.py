@@ -27,7 +27,6 @@ from trajectory_msgs.msg import JointTrajectory
 
 from scene_graph import format_stacks
 
-from .arm_models import ARM_MODELS
 from .controller import ArmController
 from .conversions import (
     WORLD_FRAME,
@@ -39,9 +38,10 @@ from .conversions import (
 from .ground_truth import true_scene_graph
 from .layouts import LayoutError, format_layout, parse_layout, random_layout
 from .parameters import PARAMETERS, first_layout
-from .robot_description import robot_description
 from .scene import SceneConfig
+from .simulated_arms import SIMULATED_ARMS
 from .trajectory import TrajectoryError
+from .urdf import robot_description
 from .world import World
 
 #: Physics steps between two joint states (60 Hz) and joint states between two pictures (10 Hz).
@@ -78,7 +78,7 @@ class SimNode(Node):
         layout = first_layout(values, self._config.stack_count)
         self._create_interfaces()
 
-        self._world = World(self._config, arm=ARM_MODELS[values["robot"]])
+        self._world = World(self._config, arm=SIMULATED_ARMS[values["robot"]])
         self._arm = ArmController(self._world)
         self._world.reset(layout, values["seed"])
         # The clock starts at the host's time, so that it goes on forward when the node restarts.

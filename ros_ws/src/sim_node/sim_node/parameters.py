@@ -10,14 +10,14 @@ from tamp_runtime.parameters import ParameterSpec
 
 from scene_graph import Stacks
 
-from .arm_models import ARM_MODELS, PANDA
 from .layouts import MAX_BLOCKS, parse_layout, random_layout
+from .simulated_arms import PANDA, SIMULATED_ARMS
 
 
 def _robot_problem(name: str) -> str:
-    """the name of an arm in sim_node.arm_models"""
-    known = ", ".join(sorted(ARM_MODELS))
-    return "" if name in ARM_MODELS else f"robot = {name!r} is not a known arm; known: {known}"
+    """the name of an arm in sim_node.simulated_arms"""
+    known = ", ".join(sorted(SIMULATED_ARMS))
+    return "" if name in SIMULATED_ARMS else f"robot = {name!r} is not a known arm; known: {known}"
 
 
 PARAMETERS: Final = (

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What ``sim_node`` exports; see there."""
 
-from .arm_models import ARM_MODELS, ArmModel
 from .camera import Frame
 from .controller import ArmController
 from .ground_truth import true_scene_graph
@@ -14,20 +13,21 @@ from .layouts import (
     random_arrangement,
     random_layout,
 )
-from .robot_description import robot_description
 from .scene import CameraConfig, SceneConfig
+from .simulated_arms import SIMULATED_ARMS, SimulatedArm
 from .trajectory import JointLimits, Trajectory, TrajectoryError
+from .urdf import robot_description
 from .world import World
 
 __all__ = [
-    "ARM_MODELS",
+    "SIMULATED_ARMS",
     "ArmController",
-    "ArmModel",
     "CameraConfig",
     "Frame",
     "JointLimits",
     "LayoutError",
     "SceneConfig",
+    "SimulatedArm",
     "Trajectory",
     "TrajectoryError",
     "World",

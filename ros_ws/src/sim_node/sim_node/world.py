@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from scene_graph import Stacks
 
-from .arm_models import PANDA, ArmModel
 from .bodies import create_block, create_table
 from .camera import CameraRenderer, Frame
 from .layouts import check_layout
 from .meshes.light_urdf import light_urdf
 from .scene import SceneConfig
+from .simulated_arms import PANDA, SimulatedArm
 
 
 class World:
@@ -44,7 +44,7 @@ class World:
         self,
         config: SceneConfig | None = None,
         timestep: float = 1.0 / 240.0,
-        arm: ArmModel = PANDA,
+        arm: SimulatedArm = PANDA,
     ) -> None:
         self.config = config or SceneConfig()
         self.arm = arm

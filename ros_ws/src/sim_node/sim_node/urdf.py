@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import re
 
-from .arm_models import PANDA, ArmModel
+from .simulated_arms import PANDA, SimulatedArm
 
 
-def robot_description(arm: ArmModel = PANDA) -> str:
+def robot_description(arm: SimulatedArm = PANDA) -> str:
     """URDF text; ``package://`` of pybullet's data becomes absolute ``file://``.
 
     Raises:

@@ -10,24 +10,24 @@ import pybullet
 import pytest
 
 from motion_node.robots import ARMS
-from sim_node.arm_models import ARM_MODELS, ArmModel
 from sim_node.parameters import PARAMETERS
-from sim_node.robot_description import robot_description
+from sim_node.simulated_arms import SIMULATED_ARMS, SimulatedArm
+from sim_node.urdf import robot_description
 from sim_node.world import World
 
 
-@pytest.mark.parametrize("name", sorted(ARM_MODELS))
+@pytest.mark.parametrize("name", sorted(SIMULATED_ARMS))
 def test_motion_node_knows_the_same_joints_and_the_same_home(name: str) -> None:
-    model, planned = ARM_MODELS[name], ARMS[name]
+    model, planned = SIMULATED_ARMS[name], ARMS[name]
     assert model.arm_joints == planned.arm_joints
     assert model.finger_joints == planned.gripper.finger_joints
     assert model.home == planned.home
     assert model.fingers_open == planned.gripper.finger_travel
 
 
-@pytest.mark.parametrize("name", sorted(ARM_MODELS))
+@pytest.mark.parametrize("name", sorted(SIMULATED_ARMS))
 def test_the_published_description_is_the_original_with_absolute_paths(name: str) -> None:
-    model = ARM_MODELS[name]
+    model = SIMULATED_ARMS[name]
     published = ElementTree.fromstring(robot_description(model))
     original = ElementTree.fromstring(model.urdf.read_text())
     for mesh in original.iterfind(".//mesh"):
@@ -36,9 +36,9 @@ def test_the_published_description_is_the_original_with_absolute_paths(name: str
     assert ElementTree.tostring(published) == ElementTree.tostring(original)
 
 
-@pytest.mark.parametrize("name", sorted(ARM_MODELS))
+@pytest.mark.parametrize("name", sorted(SIMULATED_ARMS))
 def test_a_world_starts_at_home_with_open_fingers(name: str) -> None:
-    model = ARM_MODELS[name]
+    model = SIMULATED_ARMS[name]
     with World(arm=model) as world:
         world.reset((("red_box",), (), ()))
         positions = dict(zip(model.joints, world.joint_state()[0]))
@@ -54,9 +54,9 @@ def test_a_world_starts_at_home_with_open_fingers(name: str) -> None:
 
 
 def test_values_of_all_joints_stand_in_the_order_of_the_joints() -> None:
-    model = ArmModel(
+    model = SimulatedArm(
         name="small",
-        urdf=next(iter(ARM_MODELS.values())).urdf,
+        urdf=next(iter(SIMULATED_ARMS.values())).urdf,
         arm_joints=("a", "b", "c"),
         finger_joints=("left", "right"),
         home=(0.1, 0.2, 0.3),

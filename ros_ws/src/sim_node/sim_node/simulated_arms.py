@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
-class ArmModel:
+class SimulatedArm:
     """An arm with a parallel gripper.
 
     Values of all joints at once are in the order of :attr:`joints`.
@@ -71,7 +71,7 @@ class ArmModel:
 
 
 #: Franka Emika Panda with its hand, as pybullet ships it.
-PANDA: Final = ArmModel(
+PANDA: Final = SimulatedArm(
     name="panda",
     urdf=Path(pybullet_data.getDataPath()) / "franka_panda" / "panda.urdf",
     arm_joints=tuple(f"panda_joint{number}" for number in range(1, 8)),
@@ -85,4 +85,4 @@ PANDA: Final = ArmModel(
 )
 
 #: By the name that the parameter ``robot`` takes; an arm is added here.
-ARM_MODELS: Final[Mapping[str, ArmModel]] = {model.name: model for model in (PANDA,)}
+SIMULATED_ARMS: Final[Mapping[str, SimulatedArm]] = {model.name: model for model in (PANDA,)}
