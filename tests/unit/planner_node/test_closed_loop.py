@@ -12,7 +12,6 @@ from loop_bench import (
     START,
     Behaviour,
     LoopBench,
-    fail,
     ignore,
     knock,
     obey,
@@ -20,7 +19,7 @@ from loop_bench import (
     restart,
     take_up_and_die,
 )
-from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
+from tamp_runtime.motion_report import MotionReport, MotionState
 
 from planner_node.loop import Outcome, Plan, Progress, Stage, Status
 from planner_node.search import ALGORITHMS, Limits, Problem, State
@@ -167,72 +166,6 @@ def test_the_scene_is_looked_at_after_the_request() -> None:
     outcome = bench.achieve()
     assert ended(outcome) == (Status.NOT_CONFIDENT, "perception")
     assert "before the last motion or the request" in outcome.message
-
-
-def test_a_knocked_block_is_planned_for_anew() -> None:
-    bench = LoopBench(knock((("blue_box",), ("green_box",), ("red_box",))))
-    outcome = bench.achieve()
-    assert (outcome.status, outcome.replans) == (Status.SUCCESS, 1)
-    assert (outcome.moves_planned, outcome.moves_executed) == (3, 5)
-    assert bench.stacks == REACHED
-    assert len({plan.plan_id for plan in bench.plans}) == 2
-    assert bench.told[-1].replans == 1
-
-
-@pytest.mark.parametrize(
-    "reason", [MotionReason.GRASP_LOST, MotionReason.TRACKING_LOST, MotionReason.TIMEOUT]
-)
-def test_a_lost_grasp_is_looked_at_and_planned_for_anew(reason: MotionReason) -> None:
-    bench = LoopBench(fail(reason, "the block slipped", after=1))
-    outcome = bench.achieve()
-    assert (outcome.status, outcome.replans, outcome.moves_executed) == (Status.SUCCESS, 1, 3)
-    assert Progress(Stage.CONFIRMING, "the block slipped", bench.plans[0]) in [
-        Progress(item.stage, item.message, item.plan) for item in bench.told
-    ]
-
-
-def test_replans_are_bounded() -> None:
-    lost = fail(MotionReason.GRASP_LOST, "the fingers closed on nothing")
-    bench = LoopBench(lost, lost, lost, max_replans=2)
-    outcome = bench.achieve()
-    assert (outcome.status, outcome.replans) == (Status.TOO_MANY_REPLANS, 2)
-    assert "red_box blue_box" in outcome.message
-    assert "the fingers closed on nothing" in outcome.message
-    assert len(bench.plans) == 3
-
-
-def test_an_infeasible_motion_is_tried_once_more_from_new_poses() -> None:
-    sentence = "keyframes: hand to stack1 is 2 mm too close"
-    infeasible = fail(MotionReason.INFEASIBLE, sentence)
-    bench = LoopBench(infeasible, infeasible)
-    outcome = bench.achieve()
-    assert ended(outcome) == (Status.MOTION_FAILED, "motion")
-    assert outcome.message == sentence
-    assert outcome.motion.reason == MotionReason.INFEASIBLE
-    assert len(bench.plans) == 2
-
-
-def test_infeasible_twice_with_something_else_between_is_no_reason_to_give_up() -> None:
-    infeasible = fail(MotionReason.INFEASIBLE, "too close")
-    bench = LoopBench(infeasible, fail(MotionReason.GRASP_LOST, "slipped"), infeasible)
-    assert bench.achieve().status == Status.SUCCESS
-
-
-@pytest.mark.parametrize(
-    ("reason", "status"),
-    [
-        (MotionReason.INVALID_PLAN, Status.MOTION_FAILED),
-        (MotionReason.NO_JOINT_STATES, Status.MOTION_FAILED),
-        (MotionReason.INTERNAL_ERROR, Status.MOTION_FAILED),
-        (MotionReason.BUSY, Status.BUSY),
-    ],
-)
-def test_a_motion_that_fails_for_good_ends_the_loop(reason: MotionReason, status: Status) -> None:
-    bench = LoopBench(fail(reason, "no joint states arrive"))
-    outcome = bench.achieve()
-    assert ended(outcome) == (status, "motion")
-    assert outcome.message == "no joint states arrive"
-    assert len(bench.plans) == 1
 
 
 @pytest.mark.parametrize("behaviour", [ignore, take_up_and_die, restart])
