@@ -21,7 +21,7 @@ from tamp_runtime.qos import RELIABLE, SENSOR_DATA
 from visualization_msgs.msg import Marker, MarkerArray
 
 from perception_node.node import PerceptionNode
-from scene_graph import GraphStatus, Stacks, up_relations
+from scene_graph import Stacks, up_relations
 from sim_node.camera import Frame
 from sim_node.conversions import camera_messages
 from sim_node.scene import CameraConfig
@@ -220,11 +220,6 @@ def test_parameters_are_checked_and_take_effect(
     message = camera.show(frames[TOWERS])
     assert message.status == SceneGraph.UNSTABLE
     assert "3 stacks are seen but there are 2 places" in message.message
-
-
-def test_the_verdicts_have_the_numbers_of_the_interface() -> None:
-    for status in GraphStatus:
-        assert getattr(SceneGraph, status.name) == status.value
 
 
 def test_bad_weights_are_refused_with_a_sentence(start: Start, tmp_path: Path) -> None:

@@ -40,6 +40,15 @@ def test_a_stream_that_is_missing_is_named() -> None:
     for stamp in range(100):
         feed(pairing, stamp, "image", "depth")
     assert pairing.missing() == ("segmentation",)
+    feed(pairing, 100, "depth")  # whose image is still on its way
+    assert pairing.missing() == ("segmentation",)
+
+
+def test_without_a_stream_that_is_always_missing_those_of_the_newest_set_are_named() -> None:
+    pairing = FramePairing(STREAMS)
+    feed(pairing, 1, "image", "depth")
+    feed(pairing, 2, "segmentation")
+    assert pairing.missing() == ("depth", "image")
 
 
 def test_a_camera_whose_clock_starts_anew_is_followed() -> None:

@@ -60,8 +60,16 @@ class FramePairing:
         return StampedSet(stamp, first, messages)
 
     def missing(self) -> tuple[str, ...]:
-        """Streams that the newest incomplete set still lacks, sorted; empty if none is waiting."""
+        """Streams that the waiting sets lack, sorted; empty if none is waiting.
+
+        What all of them lack, as the newest may just be on its way; if there is no such stream,
+        what the newest lacks.
+        """
         if not self._waiting:
             return ()
-        _, messages = self._waiting[max(self._waiting)]
-        return tuple(sorted(self._streams - messages.keys()))
+        lacking = {
+            stamp: self._streams.difference(messages)
+            for stamp, (_, messages) in self._waiting.items()
+        }
+        always = frozenset.intersection(*lacking.values())
+        return tuple(sorted(always or lacking[max(lacking)]))
