@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -34,38 +33,41 @@ from motion_node.robots import PANDA
 
 Array = NDArray[np.float64]
 
-NAMES = PANDA.joint_names
+FINGERS = len(PANDA.arm_joints)
 HOME = np.array([*PANDA.home, 0.04, 0.04])
+#: Machines that stand still for half a minute exist, and the time of this arm is not the wall's.
+PATIENT = {"joint_state_timeout": 60.0, "start_timeout": 60.0, "max_lag": 60.0}
 EDGE = 0.045
 COLORS = ("red", "green", "blue", "yellow", "purple")
 ENDS = (MotionStatus.SUCCEEDED, MotionStatus.CANCELLED, MotionStatus.FAILED)
 
 
 class FakeArm(Node):
-    """Follows every trajectory exactly, ``speed`` times faster than the wall clock.
+    """Follows every trajectory exactly, in a time of its own.
 
-    Faults are switched on by setting the attributes.
+    Attributes:
+        step: how much later by its clock each tick is [s]; 15 times faster than the wall clock,
+            and slower on a machine that is busy elsewhere.
+        hold_at: it stands still, as if held, this long after it set out [s]; None: it does not.
+        block: half of what the fingers close on [m].
+        trajectories: those received.
     """
+
+    TICK = 0.004
 
     def __init__(self, describe: bool = True, **kwargs: Any) -> None:
         super().__init__("fake_arm", **kwargs)
-        self.speed = 6.0
-        self.silent = False  # publishes no joint states
-        self.deaf = False  # ignores trajectories
-        self.stuck = False  # stays where it is
-        self.frozen_clock = False  # stamps stand still
-        self.block = EDGE  # what the fingers close on [m]; 0: nothing
+        self.step, self.block = 15 * self.TICK, EDGE / 2
+        self.hold_at: float | None = None
         self.trajectories: list[JointTrajectory] = []
         self._lock = threading.Lock()
         self._positions = HOME.copy()
         self._spline: CubicHermiteSpline | None = None
-        self._began = 0.0
-        self._time = 100.0
-        self._last = time.monotonic()
+        self._along, self._time = 0.0, 100.0
         self._states = self.create_publisher(JointState, "joint_states", SENSOR_DATA)
         self._description = self.create_publisher(String, "robot_description", LATCHED)
         self.create_subscription(JointTrajectory, "joint_trajectory", self._follow, RELIABLE)
-        self.create_timer(0.004, self._tick)
+        self.create_timer(self.TICK, self._tick)
         if describe:
             self.describe()
 
@@ -80,39 +82,42 @@ class FakeArm(Node):
         with self._lock:
             return self._positions.copy()
 
+    @property
+    def held(self) -> bool:
+        """Whether it stands still as ``hold_at`` says."""
+        return self.hold_at is not None and self._along >= self.hold_at
+
+    @property
+    def at_home(self) -> bool:
+        """Whether the arm is home with open fingers."""
+        return bool(np.abs(self.positions - HOME).max() < 0.02)
+
     def _follow(self, message: JointTrajectory) -> None:
-        self.trajectories.append(message)
-        if self.deaf:
-            return
-        times = np.array(
-            [p.time_from_start.sec + 1e-9 * p.time_from_start.nanosec for p in message.points]
-        )
-        order = [list(message.joint_names).index(name) for name in NAMES]
+        times = [p.time_from_start.sec + 1e-9 * p.time_from_start.nanosec for p in message.points]
+        order = [list(message.joint_names).index(name) for name in PANDA.joint_names]
         positions = np.array([p.positions for p in message.points])[:, order]
         velocities = np.array([p.velocities for p in message.points])[:, order]
         with self._lock:
-            jump = np.abs(positions[0] - self._positions)[:7].max()
+            jump = np.abs(positions[0] - self._positions)[:FINGERS].max()
             assert jump < 0.3, f"the trajectory starts {jump:.2f} rad from here"
-            self._spline = CubicHermiteSpline(times, positions, velocities)
-            self._began = self._time
+            self._spline, self._along = CubicHermiteSpline(times, positions, velocities), 0.0
+            self.trajectories.append(message)
 
     def _tick(self) -> None:
         with self._lock:
-            now = time.monotonic()
-            # A machine that is busy elsewhere makes this arm slower, not jump.
-            if not self.frozen_clock:
-                self._time += min(now - self._last, 0.02) * self.speed
-            self._last = now
-            if self._spline is not None and not self.stuck:
-                at = np.clip(self._time - self._began, 0.0, self._spline.x[-1])
-                self._positions = np.array(self._spline(at))
-                self._positions[7:] = np.maximum(self._positions[7:], self.block / 2)
+            held = self.held
+            self._time += 0.001 if held else self.step
+            if self._spline is not None and not held:
+                self._along += self.step
+                self._positions = np.array(self._spline(min(self._along, self._spline.x[-1])))
+                self._positions[FINGERS:] = np.maximum(self._positions[FINGERS:], self.block)
             positions, stamp = self._positions.tolist(), self._time
-        if self.silent or not self.context.ok():
+        if not self.context.ok():
             return
         header = Header()
         header.stamp.sec, header.stamp.nanosec = int(stamp), int(stamp % 1 * 1e9)
-        self._states.publish(JointState(header=header, name=list(NAMES), position=positions))
+        names = list(PANDA.joint_names)
+        self._states.publish(JointState(header=header, name=names, position=positions))
 
 
 class FakePlanner(Node):
@@ -125,10 +130,12 @@ class FakePlanner(Node):
         self.create_subscription(MotionStatus, "motion_status", self.statuses.append, RELIABLE)
 
     def ask(self, plan: SymbolicPlan) -> None:
+        """Publishes a plan."""
         plan.header.stamp = self.get_clock().now().to_msg()
         self._plans.publish(plan)
 
     def stop(self, plan_id: str) -> None:
+        """Asks to stop a plan."""
         self.ask(SymbolicPlan(plan_id=plan_id))
 
     def of(self, plan_id: str) -> list[MotionStatus]:
@@ -141,23 +148,22 @@ class FakePlanner(Node):
 
 
 class Bench:
-    """Arm and planner in one context, and the motion node when it is started.
+    """Arm and planner in one context, and the motion node when it is started."""
 
-    Keyword arguments are faults of the arm.
-    """
-
-    def __init__(self, ros: Any, describe: bool = True, **faults: Any) -> None:
+    def __init__(self, ros: Any, describe: bool = True) -> None:
         self.ros = ros
         self.arm = ros.add(FakeArm(describe=describe, context=ros.context))
-        for name, value in faults.items():
-            setattr(self.arm, name, value)
         self.planner = ros.add(FakePlanner(context=ros.context))
 
+    def make(self, **parameters: Any) -> MotionNode:
+        """A motion node that is not spun yet."""
+        values = {**PATIENT, **parameters}
+        overrides = [Parameter(name, value=value) for name, value in values.items()]
+        return MotionNode(context=self.ros.context, parameter_overrides=overrides)
+
     def start(self, **parameters: Any) -> MotionNode:
-        overrides = [Parameter(name, value=value) for name, value in parameters.items()]
-        node: MotionNode = self.ros.add(
-            MotionNode(context=self.ros.context, parameter_overrides=overrides)
-        )
+        """A motion node that its neighbours have found."""
+        node: MotionNode = self.ros.add(self.make(**parameters))
         self.ros.wait_until(
             lambda: (
                 node.count_subscribers("joint_trajectory")

@@ -4,15 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from tamp_runtime.parameters import ParameterSpec
 
 from .execution.follow import ExecutionSettings
 from .execution.monitor import MonitorSettings
-from .optimiser import Settings
-from .phase_bounds import PathSettings
-from .phases import PhaseSettings
+from .nlp import SOLVERS
+from .robots import ARMS, PANDA, Arm
+from .settings import PathSettings, PhaseSettings, Settings
 from .timing.time_paths import TimingSettings
 
 _SETTINGS, _EXECUTION, _MONITOR = Settings(), ExecutionSettings(), MonitorSettings()
@@ -25,7 +26,27 @@ def _spec(
     return ParameterSpec(name, default, description, low, high, read_only)
 
 
+def _robot_problem(name: str) -> str:
+    """the name of an arm in motion_node.robots"""
+    known = ", ".join(sorted(ARMS))
+    return "" if name in ARMS else f"robot = {name!r} is not a known arm; known: {known}"
+
+
+def _solver_problem(name: str) -> str:
+    """the name of a solver in motion_node.nlp"""
+    known = ", ".join(sorted(SOLVERS))
+    return "" if name in SOLVERS else f"solver = {name!r} is not a known solver; known: {known}"
+
+
 PARAMETERS = (
+    ParameterSpec("robot", PANDA.name, "Which arm moves.", read_only=True, check=_robot_problem),
+    ParameterSpec(
+        "solver",
+        _SETTINGS.solver,
+        "What solves the motion problems.",
+        read_only=True,
+        check=_solver_problem,
+    ),
     _spec(
         "velocity_scale",
         _TIMING.velocity_scale,
@@ -42,12 +63,12 @@ PARAMETERS = (
     ),
     ParameterSpec(
         "acceleration_limits",
-        [15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0],
-        "Acceleration limits of the arm's joints [rad/s^2].",
+        [],
+        "Acceleration limits of the arm's joints, one each; empty: the arm's own [rad/s^2].",
         0.1,
         100.0,
         True,
-        lambda value: "" if len(value) == 7 else "acceleration_limits needs 7 numbers",
+        element=float,
     ),
     _spec(
         "hand_clearance",
@@ -199,8 +220,25 @@ PARAMETERS = (
 )
 
 
-def optimiser_settings(values: Mapping[str, Any]) -> Settings:
-    """What :class:`MotionOptimiser` is made with."""
+def chosen_arm(values: Mapping[str, Any]) -> Arm:
+    """The arm that is named, with the limits that are given.
+
+    Raises:
+        ValueError: if there is not one acceleration limit a joint; the sentence says so.
+    """
+    named, limits = ARMS[values["robot"]], tuple(values["acceleration_limits"])
+    if not limits:
+        return named
+    if len(limits) != len(named.arm_joints):
+        raise ValueError(
+            f"parameter acceleration_limits has {len(limits)} numbers; {named.name} has "
+            f"{len(named.arm_joints)} joints"
+        )
+    return replace(named, acceleration=limits)
+
+
+def planner_settings(values: Mapping[str, Any]) -> Settings:
+    """What :class:`motion_node.planner.MotionPlanner` is made with."""
     return Settings(
         phases=PhaseSettings(
             max_grasp_width=values["max_grasp_width"],
@@ -216,11 +254,12 @@ def optimiser_settings(values: Mapping[str, Any]) -> Settings:
         ),
         timing=timing_settings(values),
         squeeze=values["grasp_squeeze"],
+        solver=values["solver"],
     )
 
 
 def timing_settings(values: Mapping[str, Any]) -> TimingSettings:
-    """Those settings of the optimiser that may change from plan to plan."""
+    """Those settings of the planner that may change from plan to plan."""
     return TimingSettings(
         velocity_scale=values["velocity_scale"],
         acceleration_scale=values["acceleration_scale"],
@@ -230,6 +269,7 @@ def timing_settings(values: Mapping[str, Any]) -> TimingSettings:
 
 
 def execution_settings(values: Mapping[str, Any]) -> ExecutionSettings:
+    """What the execution of the next plan is held to."""
     return ExecutionSettings(
         joint_state_timeout=values["joint_state_timeout"],
         description_timeout=values["description_timeout"],
