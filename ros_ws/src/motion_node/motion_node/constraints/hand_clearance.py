@@ -54,14 +54,14 @@ class HandClearance(Constraint):
     def at_switch(self, moment: AtSwitch) -> Demand:
         """Apart from all stacks, the switch's own where the hand does not mean to touch it."""
         parameters = np.concatenate([moment.column_parameters, self._others(moment)])
-        count = len(moment.columns)
-        return Demand.constant(1, [0.0] * count, [np.inf] * count, parameters)
+        lower = np.zeros((1, len(moment.columns)))
+        return Demand(parameters[None], lower, np.full_like(lower, np.inf))
 
     def along_path(self, way: AlongPath) -> Demand:
         """Apart at each step."""
-        others = np.tile(self._others(way), (way.steps, 1))
+        others = np.repeat([self._others(way)], way.steps, axis=0)
         lower = np.zeros((way.steps, len(way.phase.columns)))
-        parameters = np.hstack([way.column_parameters, others])
+        parameters = np.concatenate([way.column_parameters, others], axis=1)
         return Demand(parameters, lower, np.full_like(lower, np.inf))
 
     def _others(self, where: AtSwitch | AlongPath) -> list[float]:

@@ -57,13 +57,13 @@ class LinkClearance(Constraint):
 
     def at_switch(self, moment: AtSwitch) -> Demand:
         """Apart from all stacks, the switch's own where the hand does not mean to touch it."""
-        count = len(moment.columns) * len(self._names)
-        parameters = [*moment.column_parameters, moment.clear.margin]
-        return Demand.constant(1, [0.0] * count, [np.inf] * count, parameters)
+        lower = np.zeros((1, len(moment.columns) * len(self._names)))
+        parameters = np.append(moment.column_parameters, moment.clear.margin)[None]
+        return Demand(parameters, lower, np.full_like(lower, np.inf))
 
     def along_path(self, way: AlongPath) -> Demand:
         """Apart at each step."""
         margins = np.full((way.steps, 1), way.clear.margin)
         lower = np.zeros((way.steps, len(way.phase.columns) * len(self._names)))
-        parameters = np.hstack([way.column_parameters, margins])
+        parameters = np.concatenate([way.column_parameters, margins], axis=1)
         return Demand(parameters, lower, np.full_like(lower, np.inf))

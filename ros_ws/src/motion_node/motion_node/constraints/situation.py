@@ -127,7 +127,7 @@ class AlongPath:
     @cached_property
     def column_parameters(self) -> Array:
         """The stacks as they count at each step, for :mod:`hulls`, shape (steps, 5 stacks) [m]."""
-        result = np.tile(column_parameters(self.phase.columns), (self.steps, 1))
+        result = np.repeat(column_parameters(self.phase.columns)[None], self.steps, axis=0)
         for end, here in self.vertical:
             result[here] = column_parameters(end.columns)
         return result

@@ -49,5 +49,5 @@ class TableClearance(Constraint):
         for _, here in way.vertical:
             lower[here] = -np.inf
         box = hand_parameters(self._arm.gripper, way.phase.tool)
-        parameters = np.tile([*box, way.clear.floor + way.clear.margin], (way.steps, 1))
+        parameters = np.repeat([[*box, way.clear.floor + way.clear.margin]], way.steps, axis=0)
         return Demand(parameters, lower, np.full_like(lower, np.inf))

@@ -95,25 +95,29 @@ class Demand:
             lower, upper: one number a row, or one number if there is one row.
             parameters: shape (parameters,).
         """
-        rows = [np.atleast_1d(np.asarray(row, float)) for row in (parameters, lower, upper)]
-        return cls(*(np.tile(row, (steps, 1)) for row in rows))
+        given, low, high = (np.array(row, float, ndmin=2) for row in (parameters, lower, upper))
+        if steps == 1:
+            return cls(given, low, high)
+        return cls(*(np.repeat(row, steps, axis=0) for row in (given, low, high)))
 
     @classmethod
     def after_one_another(cls, demands: Sequence[Demand]) -> Demand:
         """Demands on the same rows, their steps in order."""
-        return cls(
-            np.vstack([demand.parameters for demand in demands]),
-            np.vstack([demand.lower for demand in demands]),
-            np.vstack([demand.upper for demand in demands]),
-        )
+        return cls._joined(demands, 0)
 
     @classmethod
     def side_by_side(cls, demands: Sequence[Demand]) -> Demand:
         """Demands on different rows at the same steps, for :class:`JoinedRows`."""
+        return cls._joined(demands, 1)
+
+    @classmethod
+    def _joined(cls, demands: Sequence[Demand], axis: int) -> Demand:
+        if len(demands) == 1:
+            return demands[0]
         return cls(
-            np.hstack([demand.parameters for demand in demands]),
-            np.hstack([demand.lower for demand in demands]),
-            np.hstack([demand.upper for demand in demands]),
+            np.concatenate([demand.parameters for demand in demands], axis),
+            np.concatenate([demand.lower for demand in demands], axis),
+            np.concatenate([demand.upper for demand in demands], axis),
         )
 
     def at(self, step: int) -> Demand:
