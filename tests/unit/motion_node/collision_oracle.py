@@ -92,7 +92,7 @@ class CollisionOracle:
 
     def take_up(self, joints: JointValues) -> None:
         """Puts the arm and its fingers where the joints say; see :meth:`set_joints`."""
-        self.set_joints(PANDA.joint_names, np.concatenate([joints.arm, joints.fingers]))
+        self.set_joints(PANDA.joint_names, joints.joined())
 
     def set_joints(self, names: Sequence[str], positions: Array) -> None:
         """Puts the robot, and the held block with it, where the joints say."""

@@ -45,10 +45,7 @@ def carry_out(
     controller = ArmController(world)
     start = joints(world)
     trajectory = planner.solve(graph, moves, start.arm, start.fingers).trajectory
-    positions, velocities = (
-        np.hstack([values.arm, values.fingers])
-        for values in (trajectory.positions, trajectory.velocities)
-    )
+    positions, velocities = trajectory.positions.joined(), trajectory.velocities.joined()
     controller.follow(PANDA.joint_names, trajectory.times, positions, velocities)
     monitor = Monitor(trajectory, ArmState(world.time, 0.0, start, 1.0), MonitorSettings())
     while True:

@@ -34,10 +34,8 @@ def plan_from_message(message: SymbolicPlan) -> Plan:
 def trajectory_to_message(trajectory: Trajectory, arm: Arm) -> JointTrajectory:
     """Names all joints; the stamp stays zero, which asks the controller to start at once."""
     message = JointTrajectory(joint_names=list(arm.joint_names))
-    positions, velocities = (
-        np.hstack([values.arm, values.fingers]).tolist()
-        for values in (trajectory.positions, trajectory.velocities)
-    )
+    positions = trajectory.positions.joined().tolist()
+    velocities = trajectory.velocities.joined().tolist()
     message.points = [
         JointTrajectoryPoint(
             positions=position,

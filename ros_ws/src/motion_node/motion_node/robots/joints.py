@@ -28,6 +28,10 @@ class JointValues:
         """The values at an index into the leading axes, as NumPy understands it."""
         return JointValues(self.arm[index], self.fingers[index])
 
+    def joined(self) -> Array:
+        """All values as :attr:`Arm.joint_names` names them, shape (..., n + 2), for messages."""
+        return np.concatenate([self.arm, self.fingers], axis=-1)
+
     def furthest(self, other: JointValues) -> tuple[Array, Array]:
         """Largest distances of arm joints and of fingers to another's, shapes (...,) [rad, m]."""
         arm = np.abs(self.arm - other.arm).max(axis=-1)
