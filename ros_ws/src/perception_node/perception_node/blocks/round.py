@@ -36,7 +36,11 @@ def measure_round(view: BlockView, points: Array, normals: Array) -> BlockSurfac
 
 
 def _fit_ball(points: Array) -> tuple[Array, float, float]:
-    """Circle or sphere through points (n, d), by least squares: centre, radius, median residual."""
+    """Circle or sphere through points (n, d) by least squares.
+
+    Returns:
+        Centre, shape (d,), radius, and the 80th percentile of the residuals [m].
+    """
     if len(points) < 3 * MIN_FACE_POINTS:
         return np.full(points.shape[1], np.nan), np.nan, np.inf
     mean = points.mean(0)
