@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,15 +79,9 @@ class FakePlanner:
         self.ways_home: list[int] = []
 
     def solve(
-        self,
-        graph: SceneGraph,
-        moves: Sequence[Move],
-        arm: Array,
-        fingers: Array,
-        object_names: Sequence[str] = (),
-        cancelled: Callable[[], bool] = lambda: False,
+        self, graph: Any, moves: Any, arm: Array, fingers: Array, names: Any, cancelled: Any
     ) -> Motion:
-        self.asked.append((graph, tuple(moves), tuple(object_names)))
+        self.asked.append((graph, tuple(moves), tuple(names)))
         self.while_solving()
         if "solve" in self.errors and (cancelled() or "cancelled" not in str(self.errors["solve"])):
             raise self.errors["solve"]

@@ -7,8 +7,6 @@ teleports after a reset, and gravity is always on.
 
 from __future__ import annotations
 
-from types import TracebackType
-
 import numpy as np
 import pybullet
 from numpy.typing import NDArray
@@ -82,12 +80,7 @@ class World:
     def __enter__(self) -> World:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         self.close()
 
     def close(self) -> None:

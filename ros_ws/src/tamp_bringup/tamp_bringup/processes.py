@@ -11,7 +11,6 @@ import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Final
 
 from ament_index_python.packages import get_package_share_path
@@ -69,12 +68,7 @@ class NodeProcesses:
             raise
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         for node, code in self.stop_all().items():
             if code in (EXIT_STUCK, -signal.SIGKILL):
                 log = self._logs / f"{node}.log"

@@ -8,7 +8,7 @@ on the way ends in a report; all waits have time limits.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -41,16 +41,9 @@ class Plan:
 class Planner(Protocol):
     """What plans motions; see :class:`motion_node.planner.MotionPlanner`."""
 
-    def solve(
-        self,
-        graph: SceneGraph,
-        moves: Sequence[Move],
-        arm: Array,
-        fingers: Array,
-        object_names: Sequence[str] = (),
-        cancelled: Callable[[], bool] = lambda: False,
-    ) -> Motion:
-        """The motion that carries out moves in a scene, and goes home."""
+    @property
+    def solve(self) -> Callable[..., Motion]:
+        """Plans the motion that carries out moves in a scene, and goes home."""
 
     def solve_way_home(self, motion: Motion, moves_done: int, arm: Array, fingers: Array) -> Motion:
         """The way home of an empty hand in the middle of a plan."""

@@ -24,13 +24,7 @@ class Seeding(Protocol):
         """By how much each time, along the arm's self-motion [rad]."""
 
     def turned(
-        self,
-        home: Array,
-        home_yaw: float,
-        azimuths: Array,
-        yaws: Array,
-        lower: Array,
-        upper: Array,
+        self, home: Array, home_yaw: float, azimuths: Array, yaws: Array, lower: Array, upper: Array
     ) -> tuple[Array, Array]:
         """Rest postures turned towards places, and the fingers' directions nearest to yaws.
 
@@ -59,13 +53,7 @@ class TurnedHome:
     swing_step: float = 0.35
 
     def turned(
-        self,
-        home: Array,
-        home_yaw: float,
-        azimuths: Array,
-        yaws: Array,
-        lower: Array,
-        upper: Array,
+        self, home: Array, home_yaw: float, azimuths: Array, yaws: Array, lower: Array, upper: Array
     ) -> tuple[Array, Array]:
         """See :meth:`Seeding.turned`.
 

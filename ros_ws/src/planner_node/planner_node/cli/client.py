@@ -16,7 +16,6 @@ import queue
 import time
 import uuid
 from collections.abc import Callable
-from types import TracebackType
 from typing import Any, Final
 
 from action_msgs.msg import GoalStatus
@@ -190,12 +189,7 @@ class PlannerClient:
     def __enter__(self) -> PlannerClient:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         self.close()
 
     def _started(self) -> Future:
