@@ -110,7 +110,16 @@ def _row(
 
 def _bare_environment() -> dict[str, str]:
     """Without this workspace, so that the other checkout's own is found."""
-    ours = ("VIRTUAL_ENV", "PYTHONPATH", "AMENT_", "COLCON_", "CMAKE_", "LD_LIBRARY_PATH", "ROS_")
+    ours = (
+        "VIRTUAL_ENV",
+        "PYTHONPATH",
+        "AMENT_",
+        "COLCON_",
+        "CMAKE_",
+        "LD_LIBRARY_PATH",
+        "ROS_",
+        "_ROS_",
+    )
     kept = {key: value for key, value in os.environ.items() if not key.startswith(ours)}
     venv = os.environ.get("VIRTUAL_ENV", "")
     folders = kept.get("PATH", "").split(os.pathsep)
