@@ -40,7 +40,7 @@ def prepare_process() -> None:
     DDS discovery stays on this host unless the environment asks for more:
     ``ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET`` opens it.
 
-    Threads take turns ten times more often than Python's 5 ms. A thread that computes in a library
+    Threads take turns fifty times more often than Python's 5 ms. A thread that computes in a library
     gives the interpreter up at each call, and waits that long to get it back from one that hears
     joint states: a motion of 0.1 s took 3 s.
     """
