@@ -23,7 +23,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 #: After how long a thread that computes passes the interpreter on to one that waits for it [s].
-SWITCH_INTERVAL: Final = 5e-4
+SWITCH_INTERVAL: Final = 1e-4
 
 #: How long the shutdown of a node may take before its process is ended [s].
 STOP_SECONDS: Final = 5.0
@@ -40,9 +40,9 @@ def prepare_process() -> None:
     DDS discovery stays on this host unless the environment asks for more:
     ``ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET`` opens it.
 
-    Threads take turns fifty times more often than Python's 5 ms. A thread that computes in a library
-    gives the interpreter up at each call, and waits that long to get it back from one that hears
-    joint states: a motion of 0.1 s took 3 s.
+    Threads take turns fifty times more often than Python's 5 ms. A thread that computes in a
+    library gives the interpreter up at each call, and waits that long to get it back from one that
+    hears joint states: a motion of 0.1 s took 3 s.
     """
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     sys.setswitchinterval(SWITCH_INTERVAL)
