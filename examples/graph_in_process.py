@@ -7,14 +7,12 @@ python examples/graph_in_process.py "red on green"
 from __future__ import annotations
 
 import sys
-import threading
-from contextlib import suppress
 
 import rclpy
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.parameter import Parameter
 from tamp_runtime.domain import reserve_domain
 from tamp_runtime.node_process import prepare_process
+from tamp_runtime.node_thread import NodeThread
 
 from motion_node.node import MotionNode
 from perception_node.node import PerceptionNode
@@ -25,11 +23,6 @@ from sim_node.node import SimNode
 LAYOUT = ["red_box,blue_box", "", "green_box"]
 
 
-def spin(executor: MultiThreadedExecutor) -> None:
-    with suppress(ExternalShutdownException):
-        executor.spin()
-
-
 def main(goal: str = "red on green") -> int:
     prepare_process()
     rclpy.init(domain_id=reserve_domain())  # a graph of its own, whatever else runs here
@@ -37,11 +30,7 @@ def main(goal: str = "red on green") -> int:
     clock = [Parameter("use_sim_time", value=True)]
     nodes = [SimNode(parameter_overrides=simulator)]
     nodes += [kind(parameter_overrides=clock) for kind in (PerceptionNode, PlannerNode, MotionNode)]
-    executor = MultiThreadedExecutor(num_threads=8)
-    for node in nodes:
-        executor.add_node(node)
-    thread = threading.Thread(target=spin, args=[executor])
-    thread.start()
+    spinning = NodeThread(*nodes, threads=8)
     try:
         with PlannerClient() as planner:
             planner.start(goal, timeout=60.0)
@@ -50,11 +39,10 @@ def main(goal: str = "red on green") -> int:
                     print(feedback.message)
             result = planner.result(timeout=1.0)
     finally:
-        rclpy.try_shutdown()  # ends the spinning
-        thread.join()
-        executor.shutdown()
+        spinning.stop()
         for node in reversed(nodes):
             node.destroy_node()
+        rclpy.try_shutdown()
     print(result.message)
     return 0 if result.status in (result.SUCCESS, result.ALREADY_TRUE) else 1
 

@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A node that is spun by a thread of its own, for programs that have other things to do."""
+"""Nodes that are spun by a thread of their own, for programs that have other things to do."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Final, TypeVar
 
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import (
+    ExternalShutdownException,
+    MultiThreadedExecutor,
+    SingleThreadedExecutor,
+)
 from rclpy.node import Node
 
 #: A callback that takes longer than this blocks the thread [s].
@@ -18,13 +22,20 @@ Result = TypeVar("Result")
 
 
 class NodeThread:
-    """Spins a node from now until :meth:`stop`."""
+    """Spins nodes of one context from now until :meth:`stop`."""
 
-    def __init__(self, node: Node) -> None:
-        self._executor = SingleThreadedExecutor(context=node.context)
-        self._executor.add_node(node)
+    def __init__(self, *nodes: Node, threads: int = 1) -> None:
+        """``threads``: how many callbacks may run at once; the graph's nodes together want 8."""
+        context = nodes[0].context
+        self._executor = (
+            SingleThreadedExecutor(context=context)
+            if threads == 1
+            else MultiThreadedExecutor(threads, context=context)
+        )
+        for node in nodes:
+            self._executor.add_node(node)
         self._stopping = threading.Event()
-        self._thread = threading.Thread(target=self._spin, name=node.get_name(), daemon=True)
+        self._thread = threading.Thread(target=self._spin, name=nodes[0].get_name(), daemon=True)
         self._thread.start()
 
     def call(self, function: Callable[[], Result]) -> Result:
@@ -48,9 +59,13 @@ class NodeThread:
         return result.result(CALL_TIMEOUT)
 
     def stop(self) -> None:
-        """Stops spinning; no callback runs afterwards, and the node can be destroyed."""
+        """Stops spinning; no callback runs afterwards, and the nodes can be destroyed."""
         self._stopping.set()
         self._thread.join()
+        if isinstance(self._executor, MultiThreadedExecutor):
+            # Executor.shutdown of rclpy 7.1.6 leaves running callbacks behind.
+            workers: ThreadPoolExecutor = self._executor._executor
+            workers.shutdown(wait=True, cancel_futures=True)
         self._executor.shutdown()
 
     def _spin(self) -> None:
