@@ -201,7 +201,8 @@ def main() -> int:
     }  # fmt: skip
     path = write_result(
         f"tasks_{options.blocks}",
-        f"make eval-tasks N={options.n} BLOCKS={options.blocks} RTF={options.real_time_factor:g}",
+        f"make eval-tasks N={options.n} BLOCKS={options.blocks} RTF={options.real_time_factor:g}"
+        + (f" BASELINE=CHECKOUT_OF_{baseline.commit}" if baseline else ""),
         rows,
         time.monotonic() - started,
         details,
