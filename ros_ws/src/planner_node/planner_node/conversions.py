@@ -105,6 +105,7 @@ def outcome_to_message(outcome: Outcome) -> AchieveGoal.Result:
         moves_planned=outcome.moves_planned,
         moves_executed=outcome.moves_executed,
         replans=outcome.replans,
+        causes=list(outcome.causes),
         initial=scene_to_message(outcome.initial) if outcome.initial else SceneGraphMsg(),
         final=scene_to_message(outcome.final) if outcome.final else SceneGraphMsg(),
         motion=report_to_message(outcome.motion, stamp_from_nanoseconds(outcome.motion.stamp)),

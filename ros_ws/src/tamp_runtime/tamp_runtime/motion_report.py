@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Final
 
 
 class MotionState(IntEnum):
@@ -35,13 +36,28 @@ class MotionReason(IntEnum):
     GRASP_LOST = 6
     TIMEOUT = 7
     INTERNAL_ERROR = 8
+    CONFLICT = 9
+
+
+class ArmPlace(IntEnum):
+    """How the arm is, with the numbers of MotionStatus."""
+
+    UNKNOWN = 0
+    HOME = 1
+    RESTING = 2
+    MOVING = 3
+
+
+#: What is held where the fingers hold something that the motion node did not pick.
+SOMETHING: Final = "?"
 
 
 @dataclass(frozen=True)
 class MotionReport:
     """The state of a plan at one moment.
 
-    The fields are those of MotionStatus; ``stamp`` is its header's [ns], 0 before it is sent.
+    The fields are those of MotionStatus; ``stamp`` is its header's [ns], 0 before it is sent, and
+    ``hand`` is in world [m].
     """
 
     plan_id: str = ""
@@ -59,3 +75,6 @@ class MotionReport:
     optimisation_seconds: float = 0.0
     duration: float = 0.0
     stamp: int = 0
+    arm: ArmPlace = ArmPlace.UNKNOWN
+    held: str = ""
+    hand: tuple[float, float, float] = (0.0, 0.0, 0.0)

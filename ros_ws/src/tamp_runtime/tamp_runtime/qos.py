@@ -19,9 +19,17 @@ NEWEST: Final = QoSProfile(
     history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE
 )
 
-#: Every message counts: statuses, trajectories.
+#: Every message counts: trajectories, markers.
 RELIABLE: Final = QoSProfile(
     history=HistoryPolicy.KEEP_LAST, depth=20, reliability=ReliabilityPolicy.RELIABLE
+)
+
+#: Every message counts, and those who join later learn how things are: what becomes of a plan.
+STATUS: Final = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=20,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )
 
 #: The last message is kept for those who join later: descriptions, plans, ground truth.

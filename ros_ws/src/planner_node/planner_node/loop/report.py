@@ -44,9 +44,11 @@ class Status(IntEnum):
     BUSY = 11
     CANCELLED = 12
     INTERNAL_ERROR = 13
+    CONFLICT = 14
     MOTION_FAILED = 20
     MOTION_SILENT = 21
     TOO_MANY_REPLANS = 22
+    ARM_STUCK = 23
 
 
 @dataclass(frozen=True)
@@ -75,6 +77,7 @@ class Outcome:
         message: a sentence for people.
         module: the part of the system that could not go on: perception, planner, motion or "".
         moves_planned: of the first plan; ``moves_executed``: over all plans.
+        causes: why plans were given up or made anew, in order: the first cause first.
         initial, final: the first and the last scene that was seen.
         motion: the last report of the motion node.
         perceive_seconds, plan_seconds, motion_seconds, execute_seconds: wall times, summed [s];
@@ -87,6 +90,7 @@ class Outcome:
     moves_planned: int = 0
     moves_executed: int = 0
     replans: int = 0
+    causes: tuple[str, ...] = ()
     initial: Scene | None = None
     final: Scene | None = None
     motion: MotionReport = NO_REPORT
