@@ -39,6 +39,7 @@ def test_numbers_are_those_of_the_message(
 def test_a_report_survives_the_way_into_a_message_and_back() -> None:
     report = MotionReport(
         "a", MotionState.FAILED, MotionReason.INFEASIBLE, "why", "path", "red_box", "clearance",
-        1, 2, 3, "pick", 0.5, 0.25, 2.0, stamp=5_000_000_007, arm=ArmPlace.RESTING, held="blue_box", hand=(0.5, 0.1, 0.25),
+        1, 2, 3, "pick", 0.5, 0.25, 2.0, stamp=5_000_000_007,
+        arm=ArmPlace.RESTING, held="blue_box", hand=(0.5, 0.1, 0.25),
     )  # fmt: skip
     assert report_from_message(report_to_message(report, Time(sec=5, nanosec=7))) == report
