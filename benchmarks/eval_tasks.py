@@ -66,7 +66,7 @@ def run_tasks(options: argparse.Namespace, folder: Path, tasks: range) -> list[d
                 result = run_task(
                     planner, observer, initial, goal, check_alive=processes.check
                 ).to_json()
-                result |= {"seed": seed, "graph_seconds": observer.graph_seconds[:]}
+                result |= {"seed": seed, "graph_seconds": list(observer.graph_seconds)}
                 path.write_text(json.dumps(result, indent=1))
             results.append(json.loads(path.read_text()))
             done = sum(result["success"] for result in results)

@@ -20,6 +20,9 @@ from tamp_runtime.node_process import EXIT_STUCK
 #: The four nodes of the graph; each package's node has the package's name.
 NODES: Final = ("sim_node", "perception_node", "planner_node", "motion_node")
 
+#: What nodes name absolutely, by ROS's own custom; in a namespace it is that of the graph there.
+NAMESPACED: Final = {"/clock": "clock", "/tf": "tf", "/tf_static": "tf_static"}
+
 #: A node ends itself before (``STOP_SECONDS``), unless the whole machine stands still [s].
 _STOP_TIMEOUT: Final = 30.0
 _PR_SET_PDEATHSIG: Final = 1
@@ -43,6 +46,8 @@ class NodeProcesses:
         log_folder: receives ``NODE.log``.
         parameters: parameters by node, added to those of ``config/demo.yaml``.
         nodes: which nodes to start.
+        namespace: that of every node, such as ``/left``; the clock and the frames are in it, too.
+        remappings: names by node, from → to, such as those of a relay between two nodes.
     """
 
     def __init__(
@@ -50,10 +55,14 @@ class NodeProcesses:
         log_folder: Path,
         parameters: Mapping[str, Mapping[str, Any]] | None = None,
         nodes: tuple[str, ...] = NODES,
+        namespace: str = "",
+        remappings: Mapping[str, Mapping[str, str]] | None = None,
     ) -> None:
         self._logs = log_folder
         self._parameters = parameters or {}
         self._nodes = nodes
+        self._namespace = f"/{namespace.strip('/')}" if namespace.strip("/") else ""
+        self._remappings = remappings or {}
         self._processes: dict[str, subprocess.Popen[bytes]] = {}
 
     def __enter__(self) -> NodeProcesses:
@@ -76,10 +85,7 @@ class NodeProcesses:
 
     def start(self, node: str) -> None:
         """Starts one node by ``ros2 run``."""
-        defaults = get_package_share_path("tamp_bringup") / "config" / "demo.yaml"
-        command = ["ros2", "run", node, node, "--ros-args", "--params-file", str(defaults)]
-        for name, value in self._parameters.get(node, {}).items():
-            command += ["-p", f"{name}:={value}"]
+        command = self.command(node)
         with (self._logs / f"{node}.log").open("ab") as log:
             # A session of its own: Ctrl-C in the terminal must reach the client first, which stops
             # the arm before the nodes go away.
@@ -92,18 +98,49 @@ class NodeProcesses:
                 preexec_fn=_set_up_child,
             )
 
+    def command(self, node: str) -> list[str]:
+        """What starts a node, for a person who wants to do the same by hand."""
+        defaults = get_package_share_path("tamp_bringup") / "config" / "demo.yaml"
+        command = ["ros2", "run", node, node, "--ros-args", "--params-file", str(defaults)]
+        for name, value in self._parameters.get(node, {}).items():
+            command += ["-p", f"{name}:={value}"]
+        names = dict(self._remappings.get(node, {}))
+        if self._namespace:
+            # The first rule that fits counts.
+            names = {**names, **{name: to for name, to in NAMESPACED.items() if name not in names}}
+            names["__ns"] = self._namespace
+        for name, to in names.items():
+            command += ["-r", f"{name}:={to}"]
+        return command
+
+    def signal(self, node: str, number: signal.Signals) -> None:
+        """Sends a signal to a node that runs, such as SIGSTOP and SIGCONT."""
+        self._signal(self._processes[node], number)
+
+    def kill(self, node: str) -> None:
+        """Ends a node by force, as a crash would; it may be started again."""
+        process = self._processes.pop(node)
+        self._signal(process, signal.SIGKILL)
+        process.wait(_STOP_TIMEOUT)
+
+    def restart(self, node: str) -> None:
+        """Starts a node anew; one that still runs is stopped before."""
+        if node in self._processes:
+            self.stop(node)
+        self.start(node)
+
     def stop(self, node: str) -> int:
         """Stops one node with SIGINT, and by force if it takes too long; returns its exit code.
 
         ``EXIT_STUCK`` or the negative number of SIGKILL is that of a node that hung.
         """
-        self._signal(self._processes[node], signal.SIGINT)
+        self._interrupt(self._processes[node])
         return self._wait(node)
 
     def stop_all(self) -> dict[str, int]:
         """Stops every node that runs, all at once; returns exit codes by node, as :meth:`stop`."""
         for process in self._processes.values():
-            self._signal(process, signal.SIGINT)
+            self._interrupt(process)
         return {node: self._wait(node) for node in list(self._processes)}
 
     def check(self) -> None:
@@ -119,6 +156,11 @@ class NodeProcesses:
         except subprocess.TimeoutExpired:
             self._signal(process, signal.SIGKILL)
             return process.wait(_STOP_TIMEOUT)
+
+    @classmethod
+    def _interrupt(cls, process: subprocess.Popen[bytes]) -> None:
+        cls._signal(process, signal.SIGINT)
+        cls._signal(process, signal.SIGCONT)  # one that stands still hears nothing
 
     @staticmethod
     def _signal(process: subprocess.Popen[bytes], number: signal.Signals) -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import threading
 import time
+from collections import deque
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 
 import rclpy
 from sensor_msgs.msg import Image
@@ -25,6 +26,10 @@ from sim_node.layouts import format_layout
 from .recording import Recording
 
 
+#: How many of perception's times are kept: those of an hour at three graphs a second.
+GRAPH_TIMES_KEPT: Final = 10_000
+
+
 class SimulationError(RuntimeError):
     """The simulator does not answer, or refuses; the sentence says what to do."""
 
@@ -34,17 +39,18 @@ class SceneObserver:
 
     Attributes:
         recording: receives the camera's images while it is set.
-        graph_seconds: image → graph times of perception's confident graphs [s].
+        graph_seconds: image → graph times of perception's newest confident graphs [s].
     """
 
-    def __init__(self) -> None:
-        self._node = rclpy.create_node("scene_observer")
+    def __init__(self, **node_arguments: Any) -> None:
+        """``node_arguments`` go to the node, for example ``namespace``."""
+        self._node = rclpy.create_node("scene_observer", **node_arguments)
         self._truth: SceneGraphMsg | None = None
         self._truth_count = 0
         self._graph: SceneGraphMsg | None = None
         self._image: Image | None = None
         self.recording: Recording | None = None
-        self.graph_seconds: list[float] = []
+        self.graph_seconds: deque[float] = deque(maxlen=GRAPH_TIMES_KEPT)
         self._news = threading.Condition()
         node = self._node
         node.create_subscription(SceneGraphMsg, "sim/ground_truth", self._on_truth, LATCHED)
