@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
+from signal import Signals
 from typing import Any, Final
 
 from ament_index_python.packages import get_package_share_path
@@ -113,7 +114,7 @@ class NodeProcesses:
             command += ["-r", f"{name}:={to}"]
         return command
 
-    def signal(self, node: str, number: signal.Signals) -> None:
+    def signal(self, node: str, number: Signals) -> None:
         """Sends a signal to a node that runs, such as SIGSTOP and SIGCONT."""
         self._signal(self._processes[node], number)
 
@@ -163,7 +164,7 @@ class NodeProcesses:
         cls._signal(process, signal.SIGCONT)  # one that stands still hears nothing
 
     @staticmethod
-    def _signal(process: subprocess.Popen[bytes], number: signal.Signals) -> None:
+    def _signal(process: subprocess.Popen[bytes], number: Signals) -> None:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, number)
 

@@ -25,7 +25,6 @@ from sim_node.layouts import format_layout
 
 from .recording import Recording
 
-
 #: How many of perception's times are kept: those of an hour at three graphs a second.
 GRAPH_TIMES_KEPT: Final = 10_000
 
