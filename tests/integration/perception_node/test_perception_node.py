@@ -188,7 +188,7 @@ def test_a_goal_image_is_interpreted(
         ros_context.wait_until(future.done)
         return future.result().scene_graph
 
-    image, _, segmentation, _ = camera.messages(frames[OTHER])
+    image, _, segmentation, *_ = camera.messages(frames[OTHER])
     request = ImageToSceneGraph.Request(image=image, segmentation=segmentation)
     graph = graph_from_message(ask(request))
     assert graph.places == ()  # no camera is known yet: left-relations instead

@@ -25,6 +25,7 @@ from sim_node.node import SimNode
 from sim_node.simulated_arms import PANDA
 
 HOME = PANDA.home_positions
+MOVED = np.array([0.1, *[0.0] * 8])
 JOINTS = PANDA.joints
 
 TOPICS: dict[str, tuple[type, Any]] = {
@@ -32,11 +33,12 @@ TOPICS: dict[str, tuple[type, Any]] = {
     "camera/depth/image_raw": (Image, NEWEST),
     "camera/segmentation": (Image, NEWEST),
     "camera/camera_info": (CameraInfo, NEWEST),
+    "camera/depth/camera_info": (CameraInfo, NEWEST),
     "camera/extrinsics": (TransformStamped, LATCHED),
     "joint_states": (JointState, SENSOR_DATA),
     "robot_description": (String, LATCHED),
     "sim/ground_truth": (SceneGraph, LATCHED),
-    "/clock": (Clock, SENSOR_DATA),
+    "clock": (Clock, SENSOR_DATA),
 }
 
 
@@ -94,6 +96,7 @@ def trajectory(points: list[tuple[float, np.ndarray]], **fields: Any) -> JointTr
         points=[
             JointTrajectoryPoint(
                 positions=position.tolist(),
+                velocities=[fields["velocity"]] * 9 if "velocity" in fields else [],
                 time_from_start=Duration(sec=int(time), nanosec=round(1e9 * (time % 1))),
             )
             for time, position in points
@@ -105,10 +108,11 @@ def test_pictures_have_one_stamp_and_the_agreed_shapes(
     ros_context: Any, neighbour: Neighbour
 ) -> None:
     names = ("camera/image_raw", "camera/depth/image_raw", "camera/segmentation")
+    infos = ("camera/camera_info", "camera/depth/camera_info")
 
     def one_stamp() -> bool:
-        infos = [neighbour.newest[name] for name in (*names, "camera/camera_info")]
-        return len({(info.header.stamp.sec, info.header.stamp.nanosec) for info in infos}) == 1
+        headers = [neighbour.newest[name].header for name in (*names, *infos)]
+        return len({(header.stamp.sec, header.stamp.nanosec) for header in headers}) == 1
 
     ros_context.wait_until(one_stamp)
     rgb, depth, labels = (neighbour.newest[name] for name in names)
@@ -117,6 +121,12 @@ def test_pictures_have_one_stamp_and_the_agreed_shapes(
     assert set(np.unique(array_from_image(labels, "16UC1"))) == {0, 1, 2, 3}
     assert neighbour.newest["camera/camera_info"].k[0] > 100.0
     assert neighbour.newest["camera/extrinsics"].header.frame_id == "world"
+
+
+def test_fault_8_the_depth_image_has_a_camera_info_of_its_own(neighbour: Neighbour) -> None:
+    color, depth = (neighbour.newest[f"camera/{name}camera_info"] for name in ("", "depth/"))
+    assert (depth.width, depth.height) == (color.width, color.height) == (256, 256)
+    assert (list(depth.k), depth.header.frame_id) == (list(color.k), color.header.frame_id)
 
 
 def test_ground_truth_is_the_layout_that_was_asked_for(neighbour: Neighbour) -> None:
@@ -142,10 +152,26 @@ def test_reset_takes_a_seed_or_a_layout_and_refuses_nonsense(
     assert "one place only" in refused.message
     refused = call_reset(ros_context, neighbour, seed=1, blocks=12)
     assert not refused.success
+    assert "a random scene has 3 to 7" in refused.message
     count = neighbour.counts["sim/ground_truth"]
     ros_context.wait_until(lambda: neighbour.counts["sim/ground_truth"] > count + 1)
     truth = graph_from_message(neighbour.newest["sim/ground_truth"])
     assert truth.stacks() == ((), ("pink_box", "cyan_box"), ())
+
+
+def test_fault_9_a_refusal_says_why_and_what_is_on_the_table(
+    ros_context: Any, neighbour: Neighbour
+) -> None:
+    there = ["red_box,blue_box", "", "green_box"]
+    for blocks in (0, 1, 2, 8):
+        refused = call_reset(ros_context, neighbour, seed=3, blocks=blocks)
+        assert not refused.success
+        assert f"{blocks} blocks asked for; a random scene has 3 to 7" in refused.message
+        assert "the scene is unchanged" in refused.message
+        assert refused.layout == there
+    assert call_reset(ros_context, neighbour, layout=["", "", "red_box"]).success
+    refused = call_reset(ros_context, neighbour, layout=["teapot", "", ""])
+    assert (refused.success, refused.layout) == (False, ["", "", "red_box"])
 
 
 def test_it_follows_a_trajectory_to_its_end(ros_context: Any, neighbour: Neighbour) -> None:
@@ -166,8 +192,18 @@ def test_it_follows_a_trajectory_to_its_end(ros_context: Any, neighbour: Neighbo
         trajectory([(0.0, HOME[:4])], names=list(JOINTS)[:4]),
         trajectory([(0.0, HOME[:4])]),
         trajectory([(0.0, HOME)], names=[f"joint{i}" for i in range(9)]),
+        trajectory([(0.0, HOME), (2.0, HOME + MOVED), (1.0, HOME + 2 * MOVED)]),
+        trajectory([(0.0, HOME), (1.0, HOME)], names=[]),
+        trajectory([(0.0, HOME), (1.0, HOME)], names=[JOINTS[0]] * 9),
+        trajectory([(1.0, np.zeros(0))]),
+        trajectory([(0.0, HOME), (1.0, HOME + 2.0)]),
+        trajectory([(0.0, HOME), (1.0, HOME)], velocity=1e308),
     ],
-    ids=["nan", "time", "far start", "too fast", "missing joints", "too few values", "unknown"],
+    ids=[
+        *("nan", "time", "far start", "too fast", "missing joints", "too few values", "unknown"),
+        *("times go back", "no names", "one joint nine times", "empty points", "out of range"),
+        "overflow",
+    ],
 )
 def test_a_bad_trajectory_moves_nothing_and_the_next_good_one_is_followed(
     ros_context: Any, neighbour: Neighbour, bad: JointTrajectory

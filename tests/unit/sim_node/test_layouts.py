@@ -15,6 +15,7 @@ from sim_node.layouts import (
     parse_layout,
     random_arrangement,
     random_layout,
+    requested_layout,
 )
 
 
@@ -61,3 +62,20 @@ def test_an_impossible_layout_is_refused_with_its_reason(texts: list[str], reaso
 def test_a_number_of_blocks_that_does_not_fit_is_refused(blocks: int) -> None:
     with pytest.raises(LayoutError):
         random_layout(0, blocks)
+
+
+@pytest.mark.parametrize("blocks", [0, 1, 2, 8, 65535])
+def test_fault_9_a_random_scene_has_3_to_7_blocks_as_promised(blocks: int) -> None:
+    with pytest.raises(LayoutError, match=f"{blocks} blocks asked for; a random scene has 3 to 7"):
+        requested_layout((), 1, blocks, 3)
+
+
+@pytest.mark.parametrize("blocks", [3, 7])
+def test_a_random_scene_has_as_many_blocks_as_asked_for(blocks: int) -> None:
+    assert sum(map(len, requested_layout((), 1, blocks, 3))) == blocks
+
+
+def test_fault_9_an_explicit_layout_may_have_fewer_blocks_but_not_none() -> None:
+    assert requested_layout(["", "red_box", ""], 1, 0, 3) == ((), ("red_box",), ())
+    with pytest.raises(LayoutError, match="0 blocks"):
+        requested_layout(["", "", ""], 1, 5, 3)

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ElementTree
-
 import numpy as np
 import pybullet
 import pytest
@@ -12,7 +10,6 @@ import pytest
 from motion_node.robots import ARMS
 from sim_node.parameters import PARAMETERS
 from sim_node.simulated_arms import SIMULATED_ARMS, SimulatedArm
-from sim_node.urdf import robot_description
 from sim_node.world import World
 
 
@@ -23,17 +20,6 @@ def test_motion_node_knows_the_same_joints_and_the_same_home(name: str) -> None:
     assert model.finger_joints == planned.gripper.finger_joints
     assert model.home == planned.home
     assert model.fingers_open == planned.gripper.finger_travel
-
-
-@pytest.mark.parametrize("name", sorted(SIMULATED_ARMS))
-def test_the_published_description_is_the_original_with_absolute_paths(name: str) -> None:
-    model = SIMULATED_ARMS[name]
-    published = ElementTree.fromstring(robot_description(model))
-    original = ElementTree.fromstring(model.urdf.read_text())
-    for mesh in original.iterfind(".//mesh"):
-        path = mesh.attrib["filename"].removeprefix("package://")
-        mesh.set("filename", f"file://{model.urdf.parent}/{path}")
-    assert ElementTree.tostring(published) == ElementTree.tostring(original)
 
 
 @pytest.mark.parametrize("name", sorted(SIMULATED_ARMS))

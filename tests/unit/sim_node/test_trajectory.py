@@ -72,6 +72,10 @@ def test_a_first_point_in_the_future_is_reached_from_the_present_state() -> None
         ({"positions": np.array([[0.0, 0.0], [0.5, 0.1], [1.2, 0.2]])}, "point 2 moves a"),
         ({"start": np.array([0.0, 0.3])}, "b would jump"),
         ({"times": np.array([0.0, 0.1, 0.2])}, "faster than its limit"),
+        ({"velocities": np.full((3, 2), 1e308)}, "faster than its limit"),
+        ({"velocities": np.array([[0.0, 0.0], [1e308, 0.1], [-1e308, 0.0]])}, "faster than"),
+        ({"times": np.array([0.0, 1e-9, 2e-9])}, "faster than its limit"),
+        ({"names": []}, "missing joints: a, b"),
         ({"times": np.zeros(0), "positions": np.zeros((0, 2))}, "no points"),
     ],
 )

@@ -23,7 +23,7 @@ CAMERA_FRAME = "camera_optical_frame"
 
 
 def camera_messages(frame: Frame, config: CameraConfig, stamp: Time) -> tuple:
-    """Colour, depth and segmentation image and camera info, with one header."""
+    """Colour, depth and segmentation image and the infos of colour and depth, with one header."""
     header = Header(stamp=stamp, frame_id=CAMERA_FRAME)
     k = config.intrinsics
     info = CameraInfo(
@@ -40,6 +40,7 @@ def camera_messages(frame: Frame, config: CameraConfig, stamp: Time) -> tuple:
         image_from_array(frame.rgb, "rgb8", header),
         image_from_array(frame.depth, "32FC1", header),
         image_from_array(frame.labels, "16UC1", header),
+        info,
         info,
     )
 

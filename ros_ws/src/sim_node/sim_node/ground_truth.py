@@ -7,7 +7,16 @@ import itertools
 
 import numpy as np
 
-from scene_graph import UP, Place, Relation, SceneGraph, SceneObject, base_name, split_object_name
+from scene_graph import (
+    UP,
+    Place,
+    Relation,
+    SceneGraph,
+    SceneObject,
+    Stacks,
+    base_name,
+    split_object_name,
+)
 
 from .world import World
 
@@ -54,6 +63,21 @@ def true_scene_graph(world: World) -> SceneGraph:
                 break
     places = tuple(Place(i, base) for i, base in enumerate(config.stack_positions))
     return SceneGraph(tuple(objects), frozenset(relations), places)
+
+
+def standing_blocks(graph: SceneGraph) -> tuple[Stacks, tuple[str, ...]]:
+    """The stacks as far as they stand, and the names of the blocks that stand in none."""
+    above = {item.object: item.subject for item in sorted(graph.relations) if item.predicate == UP}
+    stacks = []
+    for place in graph.places:
+        stack: list[str] = []
+        below = base_name(place.index)
+        while below in above:
+            below = above[below]
+            stack.append(below)
+        stacks.append(tuple(stack))
+    standing = {name for stack in stacks for name in stack}
+    return tuple(stacks), tuple(sorted(set(graph.names) - standing))
 
 
 def _base_reach(positions: tuple[tuple[float, float, float], ...]) -> float:

@@ -14,6 +14,8 @@ from scene_graph import BOX, COLORS, Stacks, object_name, split_object_name
 #: How many blocks can be put on the table.
 MIN_BLOCKS: Final = 1
 MAX_BLOCKS: Final = 7
+#: How many a random scene of the simulator has at least: with fewer there is little to plan.
+MIN_RANDOM_BLOCKS: Final = 3
 
 
 class LayoutError(ValueError):
@@ -48,6 +50,26 @@ def parse_layout(texts: Sequence[str], stack_count: int) -> Stacks:
     )
     check_layout(layout, stack_count)
     return layout
+
+
+def requested_layout(texts: Sequence[str], seed: int, blocks: int, stack_count: int) -> Stacks:
+    """The layout that a request for a scene means.
+
+    Args:
+        texts: an explicit layout as :func:`parse_layout` reads it, of 1 to 7 blocks; or empty.
+        seed, blocks: of the random layout where ``texts`` is empty; 3 to 7 blocks.
+
+    Raises:
+        LayoutError: the sentence says what is possible instead.
+    """
+    if texts:
+        return parse_layout(texts, stack_count)
+    if not MIN_RANDOM_BLOCKS <= blocks <= MAX_BLOCKS:
+        raise LayoutError(
+            f"{blocks} blocks asked for; a random scene has {MIN_RANDOM_BLOCKS} to {MAX_BLOCKS}, "
+            f"an explicit layout may have {MIN_BLOCKS} to {MAX_BLOCKS}"
+        )
+    return random_layout(seed, blocks, stack_count)
 
 
 def format_layout(layout: Stacks) -> list[str]:

@@ -3,15 +3,13 @@
 
 from __future__ import annotations
 
-import queue
-import threading
 import time
-import traceback
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 
+import rclpy
 from geometry_msgs.msg import TransformStamped
-from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import CameraInfo, Image, JointState
@@ -22,10 +20,11 @@ from tamp_runtime.messages.scene_graph import graph_to_message
 from tamp_runtime.messages.stamps import stamp_from_nanoseconds
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
+from tamp_runtime.presence import Presence
 from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
 from trajectory_msgs.msg import JointTrajectory
 
-from scene_graph import format_stacks
+from scene_graph import Stacks, format_stacks
 
 from .controller import ArmController
 from .conversions import (
@@ -35,9 +34,11 @@ from .conversions import (
     joint_state_message,
     trajectory_arrays,
 )
-from .ground_truth import true_scene_graph
-from .layouts import LayoutError, format_layout, parse_layout, random_layout
+from .ground_truth import standing_blocks, true_scene_graph
+from .layouts import LayoutError, format_layout, requested_layout
+from .pacing import Pacer
 from .parameters import PARAMETERS, first_layout
+from .physics_thread import PhysicsError, PhysicsThread
 from .scene import SceneConfig
 from .simulated_arms import SIMULATED_ARMS
 from .trajectory import TrajectoryError
@@ -48,89 +49,132 @@ from .world import World
 STEPS_PER_STATE = 4
 STATES_PER_FRAME = 6
 
-_COMMAND_TIMEOUT = 30.0
+#: The exit code of a process whose physics failed; the log has the traceback.
+EXIT_PHYSICS_FAILED: Final = 3
+
+#: Between the end of the physics and that of the process: answers leave meanwhile [s].
+_FAREWELL_SECONDS: Final = 0.5
 
 
 class SimNode(Node):
     """A pybullet world with an arm, blocks and a camera.
 
     Publishes:
-        camera/image_raw, camera/depth/image_raw, camera/segmentation (sensor_msgs/Image) and
-            camera/camera_info (sensor_msgs/CameraInfo), at 10 Hz of simulated time
-        camera/extrinsics (geometry_msgs/TransformStamped), latched
-        joint_states (sensor_msgs/JointState) and clock (rosgraph_msgs/Clock), at 60 Hz
+        camera/image_raw, camera/depth/image_raw, camera/segmentation (sensor_msgs/Image),
+            camera/camera_info and camera/depth/camera_info (sensor_msgs/CameraInfo), at 10 Hz of
+            simulated time; the depth is registered, so both infos are the same
+        camera/extrinsics (geometry_msgs/TransformStamped), latched; also on tf_static where
+            tf2_msgs is installed
+        joint_states (sensor_msgs/JointState) and clock (rosgraph_msgs/Clock), at 60 Hz; nodes in a
+            namespace hear the clock by the remapping /clock:=clock
         robot_description (std_msgs/String), latched
         sim/ground_truth (tamp_interfaces/SceneGraph), latched: for evaluation and tests only
+        diagnostics (diagnostic_msgs/DiagnosticArray): that it lives; a second simulator is noticed
     Subscribes:
         joint_trajectory (trajectory_msgs/JointTrajectory): replaces the running one; a malformed
             one is refused with a logged reason; one without points stops the arm
+        diagnostics (diagnostic_msgs/DiagnosticArray): of the other nodes
     Services:
         sim/reset (tamp_interfaces/ResetScene)
 
-    One thread of its own owns the physics; callbacks hand it their work through a queue.
+    One thread of its own owns the physics; callbacks hand it their work through a queue. Should the
+    physics fail, the node says so and the process ends with exit code 3.
+
+    Args:
+        on_failure: called by the physics thread when there will be no further turn.
+        kwargs: go to the node.
     """
 
-    def __init__(self, **kwargs: Any) -> None:
+    def __init__(self, on_failure: Callable[[], None] | None = None, **kwargs: Any) -> None:
         super().__init__("sim_node", **kwargs)
+        self._on_failure = on_failure
+        self._failed = False
         values = declare_parameters(self, PARAMETERS, self._parameters_changed)
-        self._real_time_factor: float = values["real_time_factor"]
         self._config = SceneConfig()
         layout = first_layout(values, self._config.stack_count)
-        self._create_interfaces()
+        self._create_publishers()
 
         self._world = World(self._config, arm=SIMULATED_ARMS[values["robot"]])
         self._arm = ArmController(self._world)
         self._world.reset(layout, values["seed"])
         # The clock starts at the host's time, so that it goes on forward when the node restarts.
         self._start_nanoseconds = time.time_ns()
-        self._publish_descriptions()
+        self._publish_descriptions(values["mesh_uris"])
         self.get_logger().info(f"scene {format_stacks(layout)}")
 
-        self._commands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
-        self._stopping = threading.Event()
-        self._thread = threading.Thread(target=self._run, name="physics", daemon=True)
-        self._thread.start()
+        self._truth = true_scene_graph(self._world)
+        self._turns = 0
+        self._real_time_factor: float = values["real_time_factor"]
+        self._pacer = Pacer(self._world.time, self._real_time_factor)
+        self._physics = PhysicsThread(
+            self._turn,
+            lambda: self._pacer.pause(self._world.time),
+            lambda text: self.get_logger().error(f"a request to the physics failed:\n{text}"),
+            self._on_death,
+        )
+        self._create_ears()
+        self._physics.start()
+
+    @property
+    def failure(self) -> str:
+        """Why the physics failed; empty as long as it has not."""
+        return self._physics.failure if self._failed else ""
 
     def destroy_node(self) -> None:
         """Ends the physics thread, then the node."""
-        self._stopping.set()
-        self._thread.join(timeout=5.0)
+        self._physics.stop()
         self._world.close()
         super().destroy_node()
 
     # Set-up
 
-    def _create_interfaces(self) -> None:
+    def _create_publishers(self) -> None:
         self._image = self.create_publisher(Image, "camera/image_raw", NEWEST)
         self._depth = self.create_publisher(Image, "camera/depth/image_raw", NEWEST)
         self._labels = self.create_publisher(Image, "camera/segmentation", NEWEST)
         self._info = self.create_publisher(CameraInfo, "camera/camera_info", NEWEST)
+        self._depth_info = self.create_publisher(CameraInfo, "camera/depth/camera_info", NEWEST)
         self._extrinsics = self.create_publisher(TransformStamped, "camera/extrinsics", LATCHED)
         self._joint_states = self.create_publisher(JointState, "joint_states", SENSOR_DATA)
-        self._clock_topic = self.create_publisher(Clock, "/clock", SENSOR_DATA)
+        self._clock_topic = self.create_publisher(Clock, "clock", SENSOR_DATA)
         self._description = self.create_publisher(String, "robot_description", LATCHED)
         self._ground_truth = self.create_publisher(SceneGraph, "sim/ground_truth", LATCHED)
-        group = ReentrantCallbackGroup()
-        self.create_subscription(
-            JointTrajectory, "joint_trajectory", self._on_trajectory, RELIABLE, callback_group=group
-        )
-        self.create_service(ResetScene, "sim/reset", self._on_reset, callback_group=group)
 
-    def _publish_descriptions(self) -> None:
+    def _create_ears(self) -> None:
+        # One after the other: of two trajectories the later one must be the last to be followed.
+        self.create_subscription(
+            JointTrajectory,
+            "joint_trajectory",
+            self._on_trajectory,
+            RELIABLE,
+            callback_group=MutuallyExclusiveCallbackGroup(),
+        )
+        # One at a time: callers who wait must not take all of the executor's threads.
+        self.create_service(
+            ResetScene,
+            "sim/reset",
+            self._on_reset,
+            callback_group=MutuallyExclusiveCallbackGroup(),
+        )
+        self._presence = Presence(self, "sim_node")
+
+    def _publish_descriptions(self, mesh_uris: str) -> None:
         extrinsics = extrinsics_message(self._config.camera, self._stamp())
         self._extrinsics.publish(extrinsics)
-        self._description.publish(String(data=robot_description(self._world.arm)))
+        self._description.publish(String(data=robot_description(self._world.arm, mesh_uris)))
         try:
             from tf2_msgs.msg import TFMessage
         except ImportError:  # not among the PyPI packages
             return
-        self._tf_static = self.create_publisher(TFMessage, "/tf_static", LATCHED)
+        self._tf_static = self.create_publisher(TFMessage, "tf_static", LATCHED)
         self._tf_static.publish(TFMessage(transforms=[extrinsics]))
 
     # Callbacks: they only hand work to the physics thread
 
     def _parameters_changed(self, values: dict[str, Any]) -> None:
-        self._real_time_factor = values.get("real_time_factor", self._real_time_factor)
+        if "real_time_factor" in values:
+            self._real_time_factor = values["real_time_factor"]
+            self._physics.post(self._start_pacing)
 
     def _on_trajectory(self, message: JointTrajectory) -> None:
         def command() -> None:
@@ -144,63 +188,65 @@ class SimNode(Node):
                     f"{trajectory.duration:.1f} s"
                 )
             except TrajectoryError as error:
-                self.get_logger().error(f"joint_trajectory refused: {error}")
+                self.get_logger().error(f"joint_trajectory refused: {error}; the arm goes on")
 
-        self._commands.put(command)
+        self._physics.post(command)
 
     def _on_reset(
         self, request: ResetScene.Request, response: ResetScene.Response
     ) -> ResetScene.Response:
-        done = threading.Event()
-
-        def command() -> None:
-            try:
-                layout = (
-                    parse_layout(request.layout, self._config.stack_count)
-                    if request.layout
-                    else random_layout(request.seed, request.blocks, self._config.stack_count)
-                )
-                self._world.reset(layout, request.seed)
-                self._arm.reset()
-                response.success = True
-                response.message = f"the scene is {format_stacks(layout)}"
-                response.layout = format_layout(layout)
-            except LayoutError as error:
-                response.message = f"{error}; the scene is unchanged"
-            done.set()
-
-        self._commands.put(command)
-        if not done.wait(_COMMAND_TIMEOUT):
-            response.message = "the simulator does not answer; its log may say why"
+        try:
+            layout = requested_layout(
+                request.layout, request.seed, request.blocks, self._config.stack_count
+            )
+            self._physics.call(lambda: self._reset(layout, request.seed))
+            response.success = True
+            response.message = f"the scene is {format_stacks(layout)}"
+            response.layout = format_layout(layout)
+        except LayoutError as error:
+            self._refuse(response, f"{error}; the scene is unchanged")
+        except PhysicsError as error:
+            self._refuse(response, f"the scene was not reset: {error}")
+        if conflict := self._presence.conflict():
+            response.message += f"; but {conflict}"
         return response
+
+    def _refuse(self, response: ResetScene.Response, reason: str) -> None:
+        """Says why, and what is on the table as the camera's last picture has it."""
+        stacks, fallen = standing_blocks(self._truth)
+        response.success, response.layout = False, format_layout(stacks)
+        response.message = reason
+        if fallen:
+            response.message += f"; in no stack: {', '.join(fallen)}"
 
     # The physics thread
 
-    def _run(self) -> None:
-        try:
-            count = 0
-            wall, simulated = time.monotonic(), self._world.time
-            while not self._stopping.is_set():
-                while not self._commands.empty():
-                    self._commands.get()()
-                for _ in range(STEPS_PER_STATE):
-                    self._arm.update()
-                    self._world.step()
-                self._publish_state()
-                count += 1
-                if count % STATES_PER_FRAME == 0:
-                    self._publish_frame()
-                if (factor := self._real_time_factor) == 0.0:
-                    wall, simulated = time.monotonic(), self._world.time
-                    continue
-                ahead = (self._world.time - simulated) / factor - (time.monotonic() - wall)
-                if ahead > 0.0:
-                    self._stopping.wait(ahead)
-                if abs(ahead) > 0.25:  # too slow a machine, or a changed factor: do not catch up
-                    wall, simulated = time.monotonic(), self._world.time
-        except Exception:
-            if not self._stopping.is_set() and self.context.ok():
-                self.get_logger().fatal(f"the physics stopped:\n{traceback.format_exc()}")
+    def _turn(self) -> None:
+        for _ in range(STEPS_PER_STATE):
+            self._arm.update()
+            self._world.step()
+        self._publish_state()
+        self._turns += 1
+        if self._turns % STATES_PER_FRAME == 0:
+            self._publish_frame()
+
+    def _reset(self, layout: Stacks, seed: int) -> None:
+        self._world.reset(layout, seed)
+        self._arm.reset()
+        self._truth = true_scene_graph(self._world)
+        self._start_pacing()
+
+    def _start_pacing(self) -> None:
+        self._pacer.change(self._world.time, self._real_time_factor)
+
+    def _on_death(self, text: str) -> None:
+        if not self.context.ok():  # the node is being stopped: nothing can be published any more
+            return
+        self._failed = True
+        self.get_logger().fatal(f"the physics stopped:\n{text}")
+        if self._on_failure:
+            time.sleep(_FAREWELL_SECONDS)
+            self._on_failure()
 
     def _stamp(self) -> Any:
         return stamp_from_nanoseconds(self._start_nanoseconds + round(self._world.time * 1e9))
@@ -214,12 +260,11 @@ class SimNode(Node):
 
     def _publish_frame(self) -> None:
         stamp = self._stamp()
+        self._truth = true_scene_graph(self._world)
         self._ground_truth.publish(
-            graph_to_message(
-                true_scene_graph(self._world), Header(stamp=stamp, frame_id=WORLD_FRAME)
-            )
+            graph_to_message(self._truth, Header(stamp=stamp, frame_id=WORLD_FRAME))
         )
-        topics = (self._image, self._depth, self._labels, self._info)
+        topics = (self._image, self._depth, self._labels, self._info, self._depth_info)
         if not any(topic.get_subscription_count() for topic in topics):
             return
         messages = camera_messages(self._world.render(), self._config.camera, stamp)
@@ -228,5 +273,15 @@ class SimNode(Node):
 
 
 def run() -> int:
-    """Runs the node until it is stopped; returns the process's exit code."""
-    return run_node(SimNode)
+    """Runs the node until it is stopped; returns the process's exit code.
+
+    That is ``EXIT_PHYSICS_FAILED`` (3) if it ended because its physics did, else as ``run_node``.
+    """
+    made: list[SimNode] = []
+
+    def make() -> SimNode:
+        made.append(SimNode(on_failure=rclpy.try_shutdown))
+        return made[0]
+
+    code = run_node(make)
+    return EXIT_PHYSICS_FAILED if made and made[0].failure else code

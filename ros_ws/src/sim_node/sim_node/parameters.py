@@ -10,8 +10,9 @@ from tamp_runtime.parameters import ParameterSpec
 
 from scene_graph import Stacks
 
-from .layouts import MAX_BLOCKS, parse_layout, random_layout
+from .layouts import MAX_BLOCKS, MIN_RANDOM_BLOCKS, requested_layout
 from .simulated_arms import PANDA, SIMULATED_ARMS
+from .urdf import BOXES, mesh_uris_problem
 
 
 def _robot_problem(name: str) -> str:
@@ -32,10 +33,23 @@ PARAMETERS: Final = (
         "robot", PANDA.name, "which arm stands there", read_only=True, check=_robot_problem
     ),
     ParameterSpec(
+        "mesh_uris",
+        BOXES,
+        "what robot_description says of the arm's meshes: boxes around them, which every machine "
+        "can show; files: where they are on this machine; or what to put before their paths",
+        read_only=True,
+        check=mesh_uris_problem,
+    ),
+    ParameterSpec(
         "seed", 0, "seed of the first scene", minimum=0, maximum=2**31 - 1, read_only=True
     ),
     ParameterSpec(
-        "blocks", 5, "blocks in the first scene", minimum=3, maximum=MAX_BLOCKS, read_only=True
+        "blocks",
+        5,
+        "blocks in the first scene where it is random; one that is given as layout may have fewer",
+        minimum=MIN_RANDOM_BLOCKS,
+        maximum=MAX_BLOCKS,
+        read_only=True,
     ),
     ParameterSpec(
         "layout",
@@ -49,6 +63,5 @@ PARAMETERS: Final = (
 
 def first_layout(values: Mapping[str, Any], stack_count: int) -> Stacks:
     """The layout that the parameters ask for; raises LayoutError if it is impossible."""
-    if any(values["layout"]):
-        return parse_layout(values["layout"], stack_count)
-    return random_layout(values["seed"], values["blocks"], stack_count)
+    texts = values["layout"] if any(values["layout"]) else ()
+    return requested_layout(texts, values["seed"], values["blocks"], stack_count)

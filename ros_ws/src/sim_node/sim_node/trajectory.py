@@ -84,9 +84,11 @@ class Trajectory:
             velocities = velocities[:, order]
         self.duration = float(times[-1])
         self._first, self._last = positions[0], positions[-1]
-        self._spline = CubicHermiteSpline(times, positions, velocities) if len(times) > 1 else None
-        if self._spline is not None:
-            _check_velocities(self._spline, times, limits)
+        self._spline: CubicHermiteSpline | None = None
+        if len(times) > 1:
+            with np.errstate(over="ignore", invalid="ignore"):
+                self._spline = CubicHermiteSpline(times, positions, velocities)
+                _check_velocities(self._spline, times, limits)
 
     def sample(self, time: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Positions and velocities at ``time`` seconds from the start, shapes (n,)."""
@@ -138,7 +140,8 @@ def _check_velocities(
     # A cubic's velocity is a parabola: three samples an interval bound it closely.
     samples = np.concatenate([times, 0.5 * (times[1:] + times[:-1])])
     speed = np.abs(spline(samples, 1)).max(axis=0)
-    too_fast = speed > limits.velocity * (1.0 + _TOLERANCE)
+    # Numbers so large that they overflow end as NaN, which is not slow enough either.
+    too_fast = ~(speed <= limits.velocity * (1.0 + _TOLERANCE))
     if too_fast.any():
         joint = int(np.argmax(speed / limits.velocity))
         raise TrajectoryError(
