@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What cameras, their drivers, the detector and the calibration do."""
+
+from __future__ import annotations
+
+from faults import damages as d
+from faults.fault import CAMERA_PHASES, Fault, Injection, Phase, Words
+from faults.injections import All, Damaged, Restarted
+from faults.modes import Change, Delay, Drop, Freeze, FreezeContent, Repeat, Swap
+from faults.relay import Mode
+from faults.topics import CAMERA, DEPTH, EXTRINSICS, IMAGE, INFO, LABELS
+
+_SILENT: Words = (("camera", "scene graph"),)
+
+
+def _lasting(name: str, what: str, topics: tuple[str, ...], mode: Mode, *words: str) -> Fault:
+    """A fault of some camera topics that stays; ``words``: one of them must be said."""
+    return Fault(name, what, Damaged(topics, mode), CAMERA_PHASES, (words,))
+
+
+def _passing(
+    name: str, what: str, injection: Injection, seconds: float, phases: tuple[Phase, ...]
+) -> Fault:
+    return Fault(name, what, injection, phases, _SILENT, seconds, transient=True)
+
+
+FAULTS = (
+    # Streams that stay out
+    _lasting("image-lost", "no colour image arrives", (IMAGE,), Drop(), IMAGE),
+    _lasting("depth-lost", "no depth image arrives", (DEPTH,), Drop(), DEPTH),
+    _lasting("segmentation-lost", "no segmentation arrives", (LABELS,), Drop(), LABELS),
+    _lasting("camera-info-lost", "no camera_info arrives", (INFO,), Drop(), INFO),
+    _lasting("camera-lost", "nothing of the camera arrives", CAMERA, Drop(), "camera"),
+    _passing(
+        "camera-lost-3s", "nothing of the camera arrives for 3 s", Damaged(CAMERA, Drop()), 3.0,
+        (*CAMERA_PHASES, Phase.EXECUTE),
+    ),
+    _passing(
+        "depth-lost-5s", "no depth image arrives for 5 s", Damaged((DEPTH,), Drop()), 5.0,
+        CAMERA_PHASES,
+    ),
+    _passing(
+        "frames-lost", "two of three messages of each stream are lost for 4 s",
+        Damaged(CAMERA, Drop(keep=3)), 4.0, CAMERA_PHASES,
+    ),
+    # Streams out of time
+    _lasting(
+        "images-late", "every image arrives 1 s late", CAMERA, Delay(1.0), "camera", "old"
+    ),
+    _lasting(
+        "depth-late", "depth arrives 2 s after the other images", (DEPTH,), Delay(2.0),
+        DEPTH, "stamps",
+    ),
+    _lasting(
+        "images-out-of-order", "messages arrive in pairs, the second first", CAMERA, Swap(),
+        "camera",
+    ),
+    _lasting("images-twice", "every message arrives twice", CAMERA, Repeat(2), "camera"),
+    _lasting(
+        "camera-frozen", "the same messages again and again, stamps and all", CAMERA, Freeze(),
+        "camera", "stamp",
+    ),
+    _lasting(
+        "picture-frozen", "the same picture with new stamps", CAMERA, FreezeContent(),
+        "camera", "picture",
+    ),
+    _lasting(
+        "stamps-constant", "all stamps are the same", CAMERA, Change(d.with_stamp(10**18)),
+        "stamp", "old",
+    ),
+    _lasting("stamps-zero", "no stamps", CAMERA, Change(d.with_stamp(0)), "stamp", "old"),
+    _lasting(
+        "stamps-future", "stamps one minute ahead", CAMERA, Change(d.stamped(60.0)), "future"
+    ),
+    _lasting("stamps-past", "stamps one minute behind", CAMERA, Change(d.stamped(-60.0)), "old"),
+    _lasting(
+        "stamps-waver", "each stream has stamps of its own", CAMERA,
+        Change(d.with_wavering_stamps()), "stamp",
+    ),
+    # Pictures
+    _lasting(
+        "image-black", "the colour image is black", (IMAGE,), Change(d.pixels(d.black)),
+        "dark", "black", "colour", "exposure",
+    ),
+    _lasting(
+        "image-white", "the colour image is white", (IMAGE,), Change(d.pixels(d.white)),
+        "bright", "white", "colour", "exposure",
+    ),
+    _lasting(
+        "image-noise", "the colour image is noise", (IMAGE,), Change(d.pixels(d.noise)),
+        "colour", "reproduces", "noise", IMAGE,
+    ),
+    _lasting(
+        "image-grainy", "noise of 20 grey levels", (IMAGE,), Change(d.pixels(d.grainy)),
+        "colour", "reproduces", "noise", IMAGE,
+    ),
+    _lasting(
+        "image-mirrored", "colour is mirrored, depth and segmentation are not", (IMAGE,),
+        Change(d.pixels(d.mirrored)), "colour", "reproduces", IMAGE, "same pixels",
+    ),
+    _lasting(
+        "encoding-wrong", "the colour image is called bgr8", (IMAGE,),
+        Change(d.of_encoding("bgr8")), "encoding",
+    ),
+    _lasting(
+        "image-small", "the colour image is 128x128, the others are not", (IMAGE,),
+        Change(d.of_size(128)), "128x128",
+    ),
+    _lasting("image-cut", "half of the colour image's data is lost", (IMAGE,), Change(d.cut_off),
+             "bytes"),
+    # Depth
+    _lasting(
+        "depth-millimetres", "depth in millimetres", (DEPTH,), Change(d.pixels(d.millimetres)),
+        "depth",
+    ),
+    _lasting(
+        "depth-nan", "depth without a value", (DEPTH,), Change(d.pixels(d.nothing_but_nan)), "depth"
+    ),
+    _lasting(
+        "depth-zero", "depth is zero everywhere", (DEPTH,), Change(d.pixels(d.black)), "depth"
+    ),
+    _lasting(
+        "depth-holes", "three of ten pixels have no depth", (DEPTH,), Change(d.pixels(d.holes)),
+        "depth",
+    ),
+    _lasting(
+        "depth-offset", "depth is 5 cm too small", (DEPTH,), Change(d.pixels(d.nearer(0.05))),
+        "depth", "extrinsics", "calibrat",
+    ),
+    # Segmentation
+    Fault(
+        "labels-shuffled", "other numbers for the same blocks, for good",
+        Damaged((LABELS,), Change(d.pixels(d.labels_shuffled))), CAMERA_PHASES,
+        (("segmentation",),), transient=True,
+    ),
+    _lasting(
+        "labels-scattered", "every pixel of a block has the label of some block", (LABELS,),
+        Change(d.pixels(d.labels_scattered)), "segmentation", "label", "reproduces",
+    ),
+    _lasting(
+        "labels-merged", "one label for all blocks", (LABELS,),
+        Change(d.pixels(d.labels_merged)), "segmentation", "label", "unknown", "cannot be seen",
+        "no ", "beside",
+    ),
+    _lasting(
+        "labels-none", "the detector finds nothing", (LABELS,), Change(d.pixels(d.black)),
+        "no block", "not a block",
+    ),
+    Fault(
+        "block-overlooked", "the detector overlooks one block",
+        Damaged((LABELS,), Change(d.pixels(d.lost_label))), CAMERA_PHASES,
+        (("not a block", "not seen", "cannot be seen", "unknown", "no ", "in the air"),),
+    ),
+    # What stands in between, what is calibrated
+    Fault(
+        "camera-half-covered", "something stands before the left half of the camera",
+        All((
+            Damaged((IMAGE,), Change(d.pixels(d.covered(60)))),
+            Damaged((DEPTH,), Change(d.pixels(d.covered(0.3)))),
+            Damaged((LABELS,), Change(d.pixels(d.covered(0)))),
+        )),
+        CAMERA_PHASES, (("hides", "hidden"),),
+    ),
+    _passing(
+        "camera-covered-4s", "something stands before half of the camera for 4 s",
+        All((
+            Damaged((IMAGE,), Change(d.pixels(d.covered(60)))),
+            Damaged((DEPTH,), Change(d.pixels(d.covered(0.3)))),
+            Damaged((LABELS,), Change(d.pixels(d.covered(0)))),
+        )),
+        4.0, CAMERA_PHASES,
+    ),
+    _lasting("info-uncalibrated", "camera_info without intrinsics", (INFO,),
+             Change(d.without_intrinsics), "intrinsics", "calibrat"),
+    _lasting("info-distorted", "the picture is not rectified", (INFO,), Change(d.distorted),
+             "distort", "rectif"),
+    _lasting("extrinsics-invalid", "a quaternion of zeros", (EXTRINSICS,),
+             Change(d.no_rotation), "extrinsics"),
+    _lasting("extrinsics-4cm-aside", "the calibration is 4 cm off to the side", (EXTRINSICS,),
+             Change(d.moved_by(y=0.04)), "extrinsics", "calibrat"),
+    _lasting("extrinsics-3cm-high", "the calibration is 3 cm too high", (EXTRINSICS,),
+             Change(d.moved_by(z=0.03)), "extrinsics", "calibrat"),
+    _lasting("extrinsics-turned", "the calibration is turned by 8 degrees", (EXTRINSICS,),
+             Change(d.turned_by(8.0)), "extrinsics", "calibrat"),
+    Fault(
+        "extrinsics-never", "perception starts and no extrinsics arrive",
+        All((Damaged((EXTRINSICS,), Drop()), Restarted("perception_node"))),
+        (Phase.PERCEIVE,), (("extrinsics",),),
+    ),
+    # What no camera can tell
+    Fault(
+        "colours-exchanged", "red and blue are exchanged: bgr8 that is called rgb8",
+        Damaged((IMAGE,), Change(d.pixels(d.red_and_blue_exchanged))), CAMERA_PHASES,
+        (("unknown", "cannot be seen", "not seen", "no "),),
+        unseen="blocks of exchanged colours are other blocks to every camera",
+    ),
+)  # fmt: skip

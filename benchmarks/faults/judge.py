@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Judges answers by the ground truth and by what they say of the cause."""
+
+from __future__ import annotations
+
+from planner_node.goals import parse_goal, resolve_goal
+from scene_graph import SceneGraph
+from tamp_bringup.scene_observer import true_stacks
+
+from faults.askers import Answer
+from faults.fault import Ending, Fault, names_the_cause
+
+
+def ending_of(
+    fault: Fault,
+    goal: str,
+    answer: Answer | None,
+    now: SceneGraph | None,
+    pictured: SceneGraph | None,
+) -> tuple[Ending, str]:
+    """What became of a task, and the sentence that the one who asked got.
+
+    Args:
+        now: the ground truth when the answer came.
+        pictured: that of the picture which the answer rests on: a world that changes between the
+            picture and the answer makes no claim wrong.
+    """
+    if answer is None:
+        return Ending.HUNG, "no answer, and none to a cancel"
+    if answer.claimed:
+        true = holds(goal, now) or holds(goal, pictured)
+        return (Ending.REACHED if true else Ending.FALSE_SUCCESS), answer.message
+    typed = answer.status != "INTERNAL_ERROR" and (
+        not fault.statuses or answer.status in fault.statuses
+    )
+    if typed and names_the_cause(answer.sentence, fault.words):
+        return Ending.REFUSED, answer.message
+    return Ending.WRONG_SENTENCE, answer.message
+
+
+def holds(goal: str, truth: SceneGraph | None) -> bool:
+    """Whether the true state fulfils a goal; one that lacks its blocks does not."""
+    stacks = true_stacks(truth) if truth else None
+    if not stacks or truth is None:
+        return False
+    try:
+        return resolve_goal(parse_goal(goal), truth.names).holds(stacks)
+    except Exception:  # a goal about blocks that are gone
+        return False
+
+
+def arm_untruth(answer: Answer, truth: SceneGraph | None, moves: bool) -> str:
+    """What an answer says of the arm and is not so; empty if all is.
+
+    Args:
+        moves: whether the arm was seen to move just after the answer.
+    """
+    if answer.arm in ("home", "resting") and moves:
+        return f"the answer says that the arm is {answer.arm}, and it moves"
+    if answer.held and truth is not None:
+        for relation in truth.relations:
+            if relation.subject == answer.held and relation.predicate == "up":
+                return f"the answer says that {answer.held} is held; it is on {relation.object}"
+    return ""

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The graph under trial with its relays, and what a running trial is about."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Collection
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+from planner_node.cli.client import PlannerClient
+from scene_graph import Stacks
+from tamp_bringup.processes import NODES, NodeProcesses
+
+from faults.askers import Asker
+from faults.eyes import Eyes
+from faults.fault import Phase
+from faults.relay import Relays
+from faults.topics import remappings, topics_of
+
+#: How long a node may take until it is there [s].
+START_SECONDS: Final = 60.0
+
+
+@dataclass
+class Setting:
+    """What an injection can lay hands on.
+
+    Attributes:
+        others: what else was started on purpose, to be stopped when the fault ends.
+        goal, initial, phase, seed, asker: of the running trial.
+    """
+
+    processes: NodeProcesses
+    relays: Relays
+    eyes: Eyes
+    planner: PlannerClient
+    folder: Path
+    parameters: dict[str, dict[str, Any]]
+    others: list[Any] = field(default_factory=list)
+    goal: str = ""
+    initial: Stacks = ()
+    phase: Phase = Phase.PERCEIVE
+    seed: int = 0
+    asker: Asker | None = None
+
+    def wait_for_nodes(self, *names: str, count: int = 1) -> bool:
+        """Whether so many nodes of each name are there in time."""
+        return self.eyes.wait_for(
+            lambda: all(self.eyes.nodes(name) >= count for name in names), START_SECONDS
+        )
+
+    def start_beside(self, *nodes: str) -> None:
+        """Starts nodes a second time, and waits until they are seen and heard."""
+        second = NodeProcesses(self.folder / "logs_second", self.parameters, nodes)
+        self.others.append(second)
+        second.__enter__()
+        self.wait_for_nodes(*nodes, count=2)
+        time.sleep(2.0)  # for the signs of life of both to be heard
+
+    def stop_others(self) -> None:
+        """Stops what was started beside the graph."""
+        while self.others:
+            self.others.pop().__exit__(None, None, None)
+
+
+class Graph:
+    """Starts the four nodes with relays between them; leaving it stops all."""
+
+    def __init__(self, folder: Path, groups: Collection[str], real_time_factor: float) -> None:
+        self._folder, self._topics = folder, topics_of(groups)
+        self._parameters = {"sim_node": {"real_time_factor": real_time_factor}}
+        self._stack = ExitStack()
+
+    def __enter__(self) -> Setting:
+        with ExitStack() as stack:
+            relays = stack.enter_context(Relays(self._topics))
+            processes = stack.enter_context(
+                NodeProcesses(
+                    self._folder / "logs",
+                    self._parameters,
+                    remappings=remappings(self._topics),
+                )
+            )
+            eyes = stack.enter_context(Eyes())
+            planner = stack.enter_context(PlannerClient())
+            setting = Setting(processes, relays, eyes, planner, self._folder, self._parameters)
+            stack.callback(setting.stop_others)
+            setting.wait_for_nodes(*NODES)
+            self._stack = stack.pop_all()
+        return setting
+
+    def __exit__(self, *error: Any) -> None:
+        self._stack.__exit__(*error)
