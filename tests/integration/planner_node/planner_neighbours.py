@@ -16,7 +16,7 @@ from std_msgs.msg import Header
 from tamp_interfaces.msg import Base, MotionStatus, SceneGraph, SceneObject, SymbolicPlan
 from tamp_interfaces.srv import ImageToSceneGraph
 from tamp_runtime.messages.scene_graph import relations_to_messages
-from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE
+from tamp_runtime.qos import LATCHED, NEWEST, STATUS
 
 from scene_graph import Move, Stacks, apply_move, up_relations
 
@@ -105,7 +105,13 @@ Behaviour = Callable[["FakeMotion", SymbolicPlan], None]
 
 
 class FakeMotion(Node):
-    """Takes up plans and treats one after the other as ``behaviours`` say; then it obeys."""
+    """Takes up plans and treats one after the other as ``behaviours`` say; then it obeys.
+
+    Once a second it says that it lives, while it does nothing else.
+
+    Attributes:
+        arm, held: what it says of the arm.
+    """
 
     def __init__(self, world: World, *behaviours: Behaviour, **kwargs: Any) -> None:
         super().__init__("fake_motion", **kwargs)
@@ -113,9 +119,12 @@ class FakeMotion(Node):
         self.behaviours = list(behaviours)
         self.plans: list[SymbolicPlan] = []
         self.stops: list[SymbolicPlan] = []
+        self.arm = MotionStatus.ARM_HOME
+        self.held = ""
+        self.busy = threading.Lock()
         self.stop_requested = threading.Event()
         self.closing = threading.Event()
-        self._publisher = self.create_publisher(MotionStatus, "motion_status", RELIABLE)
+        self._publisher = self.create_publisher(MotionStatus, "motion_status", STATUS)
         self.create_subscription(
             SymbolicPlan,
             "symbolic_plan",
@@ -123,23 +132,41 @@ class FakeMotion(Node):
             LATCHED,
             callback_group=ReentrantCallbackGroup(),
         )
+        self.create_timer(1.0, self._beat, callback_group=ReentrantCallbackGroup())
 
     def report(self, plan_id: str, state: int, **fields: Any) -> None:
         header = Header(stamp=self.get_clock().now().to_msg())
+        fields = {"arm": self.arm, "held": self.held, **fields}
         self._publisher.publish(MotionStatus(header=header, plan_id=plan_id, state=state, **fields))
 
     def destroy_node(self) -> None:
         self.closing.set()
         super().destroy_node()
 
+    def _beat(self) -> None:
+        if self.context.ok() and self.busy.acquire(blocking=False):
+            self.report("", MotionStatus.IDLE)
+            self.busy.release()
+
     def _on_plan(self, plan: SymbolicPlan) -> None:
         if not plan.moves:
             self.stops.append(plan)
             self.stop_requested.set()
+            if plan.plan_id.startswith("home-"):
+                self._go_home(plan.plan_id)
+            return
+        if plan.plan_id in {known.plan_id for known in self.plans}:
             return
         self.plans.append(plan)
         behaviour = self.behaviours.pop(0) if self.behaviours else obey
-        behaviour(self, plan)
+        with self.busy:
+            behaviour(self, plan)
+
+    def _go_home(self, plan_id: str) -> None:
+        with self.busy:
+            self.report(plan_id, MotionStatus.EXECUTING, phase="home", arm=MotionStatus.ARM_MOVING)
+            self.arm, self.held = MotionStatus.ARM_HOME, ""
+            self.report(plan_id, MotionStatus.CANCELLED, message="at home")
 
 
 def obey(motion: FakeMotion, plan: SymbolicPlan) -> None:

@@ -52,8 +52,11 @@ def test_feedback_comes_with_the_plan_and_its_scenes(make_bench: Any) -> None:
     stages = list(dict.fromkeys(item.stage for item in seen))
     assert stages == [Stage.PERCEIVING, Stage.PLANNING, Stage.OPTIMISING, Stage.EXECUTING]
     assert seen[0].plan.plan_id == ""
-    assert seen[-1].plan == bench.motion.plans[0]
-    assert len(seen[-1].states) == 3
+    full = [item for item in seen if item.plan.moves]
+    assert [item.plan for item in full] == [bench.motion.plans[0]]
+    assert len(full[0].states) == 3
+    assert seen[-1].plan.plan_id == bench.motion.plans[0].plan_id
+    assert seen[-1].message
     assert seen[-1].motion.state == MotionStatus.EXECUTING
     bench.motion.stop_requested.set()
     assert bench.client.result(60.0).status == Status.CANCELLED
@@ -105,7 +108,7 @@ def test_a_failure_names_the_module(make_bench: Any) -> None:
 def test_without_a_motion_node_nobody_hears_the_plan(
     make_bench: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("planner_node.loop.motion_link.DISCOVERY_SECONDS", PERIOD)
+    monkeypatch.setattr("planner_node.loop.execution.DISCOVERY_SECONDS", PERIOD)
     bench = make_bench()
     bench.ros.remove(bench.motion)
     result = bench.achieve(GOAL)
@@ -137,7 +140,7 @@ def test_a_defect_while_the_arm_moves_stops_it(
 
     bench = make_bench(run_until_stopped)
     with monkeypatch.context() as patch:
-        patch.setattr("planner_node.loop.ClosedLoop._on_report", defect)
+        patch.setattr("planner_node.loop.plan_run.PlanRun._on_report", defect)
         result = bench.achieve(GOAL)
     assert (result.status, result.module) == (Status.INTERNAL_ERROR, "planner")
     assert "ZeroDivisionError" in result.message

@@ -50,7 +50,7 @@ def constants(message: Any) -> dict[str, int]:
 def test_the_numbers_are_those_of_the_messages() -> None:
     result, feedback = constants(AchieveGoal.Result), constants(AchieveGoal.Feedback)
     response = constants(PlanToGoal.Response)
-    assert len(response) == 14
+    assert len(response) == 15
     assert {item.name: item.value for item in Status} == result
     assert {item.name: item.value for item in Stage} == feedback
     assert response.items() <= result.items()
@@ -116,13 +116,12 @@ def test_predicted_scenes_have_relations_and_no_poses() -> None:
 
 
 def test_a_stop_is_the_plan_without_moves() -> None:
-    value = plan()
-    message = stop_to_message(value, stamp=9)
-    assert (message.plan_id, list(message.moves)) == (value.plan_id, [])
+    message = stop_to_message("an-id", stamp=9)
+    assert (message.plan_id, list(message.moves)) == ("an-id", [])
     assert message.header.stamp == Time(nanosec=9)
 
 
-def test_feedback_carries_the_plan_from_when_there_is_one() -> None:
+def test_fault_12_feedback_carries_a_plan_once_and_then_its_name() -> None:
     writer, value = FeedbackWriter(), plan()
     assert writer.message(Progress(message="reading the goal")).plan.plan_id == ""
     running = MotionReport(value.plan_id, MotionState.EXECUTING, moves_done=1, stamp=4)
@@ -131,6 +130,9 @@ def test_feedback_carries_the_plan_from_when_there_is_one() -> None:
     assert message.plan == plan_to_message(value)
     assert len(message.states) == 2
     assert (message.motion.state, message.motion.moves_done) == (MotionStatus.EXECUTING, 1)
+    later = writer.message(Progress(Stage.EXECUTING, "moving", value, running))
+    assert (later.plan.plan_id, list(later.plan.moves)) == (value.plan_id, [])
+    assert list(later.states) == []
     another = plan()
     assert writer.message(Progress(plan=another)).plan.plan_id == another.plan_id
 

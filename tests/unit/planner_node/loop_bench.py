@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
+from tamp_runtime.motion_report import ArmPlace, MotionReason, MotionReport, MotionState
 
 from planner_node.goals import Goal, parse_goal, resolve_goal
 from planner_node.loop import (
@@ -74,34 +74,56 @@ def sighting_of(stacks: Stacks, stamp: int = 0, **fields: Any) -> Sighting:
 Behaviour = Callable[["LoopBench", Plan], Iterator[MotionReport]]
 
 
+#: What it does when it is asked for the way home.
+Way = Callable[["LoopBench"], Iterator[MotionReport]]
+
+BEAT_SECONDS = 1.0
+
+
 class LoopBench:
     """A world, those who look at it and move in it, and the loop between them.
 
     Attributes:
         fault: fields of the sightings when something is wrong.
         silent: perception reports nothing.
+        mute: the motion node says nothing, not even that it lives.
+        deaf: it hears nothing.
+        arm, held, hand: what it says of the arm while it does nothing.
+        tells_arm: whether it does; older ones do not.
+        homes: how it goes home, one way after the other; then all goes well.
         told: all progress so far.
         cancel_at: the goal is cancelled as soon as this is true of a progress.
+        conflict: what the loop is told of two nodes that do the work of one.
+        stops: the names of the plans that were to be stopped.
     """
 
     def __init__(self, *behaviours: Behaviour, **settings: Any) -> None:
         self.stacks = START
         self.fault: dict[str, Any] = {}
         self.silent = False
+        self.mute = False
+        self.deaf = False
+        self.arm = ArmPlace.HOME
+        self.held = ""
+        self.hand = (0.0, 0.0, 0.0)
+        self.tells_arm = True
+        self.homes: list[Way] = []
         self.plans: list[Plan] = []
-        self.stops: list[Plan] = []
+        self.stops: list[str] = []
         self.audience = 1
         self.told: list[Progress] = []
         self.cancel_at: Callable[[Progress], bool] = lambda _: False
         self.cancelled = False
         self.shut_down = False
+        self.conflict = ""
         self.clock = FakeClock()
         self.clock.on_wait = self.live_on
         self.settings = Settings(**settings)
         self.scenes = SceneWatch(self.settings, self.clock.ros_now, self.clock)
         self.motion = MotionLink(self.settings, self, self.clock.ros_now, self.clock)
         self._behaviours = list(behaviours)
-        self._running: tuple[Plan, Iterator[MotionReport]] | None = None
+        self._running: tuple[str, Iterator[MotionReport]] | None = None
+        self._next_beat = 0.0
 
     def achieve(self, goal: str = GOAL) -> Outcome:
         return self.loop().run(lambda: self.read(goal))
@@ -115,12 +137,17 @@ class LoopBench:
             lambda: self.cancelled,
             lambda: self.shut_down,
             self.clock,
+            lambda: self.conflict,
         )
 
     def look(self) -> None:
         self.scenes.receive(sighting_of(self.stacks, self.clock.ros_now(), **self.fault))
 
     def report(self, report: MotionReport) -> None:
+        if self.tells_arm and report.arm == ArmPlace.UNKNOWN:
+            moving = report.state == MotionState.EXECUTING
+            arm = ArmPlace.MOVING if moving else self.arm
+            report = replace(report, arm=arm, held=self.held, hand=self.hand)
         self.motion.receive(replace(report, stamp=self.clock.ros_now()))
 
     def live_on(self) -> None:
@@ -128,22 +155,43 @@ class LoopBench:
         if not self.silent:
             self.look()
         if self._running:
-            plan, reports = self._running
+            plan_id, reports = self._running
             if (report := next(reports, None)) is not None:
-                self.report(replace(report, plan_id=report.plan_id or plan.plan_id))
+                self._next_beat = self.clock.seconds + BEAT_SECONDS
+                self.report(replace(report, plan_id=report.plan_id or plan_id))
+                return
+            self._running = None
+        if not self.mute and self.clock.seconds >= self._next_beat:
+            self._next_beat = self.clock.seconds + BEAT_SECONDS
+            self.report(MotionReport())
 
     def stages(self) -> list[Stage]:
         return list(dict.fromkeys(item.stage for item in self.told))
+
+    def messages(self) -> list[str]:
+        return list(dict.fromkeys(item.message for item in self.told))
+
+    @property
+    def plan_ids(self) -> list[str]:
+        return list(dict.fromkeys(plan.plan_id for plan in self.plans))
+
+    def go_on_with(self, plan_id: str, reports: Iterator[MotionReport]) -> None:
+        """The motion node carries out something that nobody here has asked for."""
+        self._running = (plan_id, reports)
 
     # The motion node's side of the topic symbolic_plan.
 
     def publish(self, plan: Plan) -> None:
         self.plans.append(plan)
-        behaviour = self._behaviours.pop(0) if self._behaviours else obey
-        self._running = (plan, behaviour(self, plan))
+        if not self.deaf:
+            behaviour = self._behaviours.pop(0) if self._behaviours else obey
+            self._running = (plan.plan_id, behaviour(self, plan))
 
-    def publish_stop(self, plan: Plan) -> None:
-        self.stops.append(plan)
+    def publish_stop(self, plan_id: str) -> None:
+        self.stops.append(plan_id)
+        if plan_id.startswith("home-") and not self.deaf:
+            way = self.homes.pop(0) if self.homes else go_home
+            self._running = (plan_id, way(self))
 
     def subscribers(self) -> int:
         return self.audience
@@ -157,6 +205,22 @@ class LoopBench:
         """What the loop gets of a goal."""
         parsed = parse_goal(goal)
         return lambda seen: resolve_goal(parsed, [name for stack in seen for name in stack])
+
+
+def go_home(bench: LoopBench) -> Iterator[MotionReport]:
+    """The way home, without what was held."""
+    yield MotionReport(state=MotionState.EXECUTING, phase="home")
+    bench.arm, bench.held = ArmPlace.HOME, ""
+    yield MotionReport(state=MotionState.CANCELLED, message="at home")
+
+
+def stay(reason: MotionReason, message: str) -> Way:
+    """There is no way home."""
+
+    def way(_bench: LoopBench) -> Iterator[MotionReport]:
+        yield MotionReport(state=MotionState.FAILED, reason=reason, message=message)
+
+    return way
 
 
 def carry_out(bench: LoopBench, moves: Sequence[Move]) -> Iterator[MotionReport]:
@@ -203,20 +267,20 @@ def knock(stacks: Stacks) -> Behaviour:
     return behaviour
 
 
-def ignore(_bench: LoopBench, _plan: Plan) -> Iterator[MotionReport]:
+def ignore(bench: LoopBench, _plan: Plan) -> Iterator[MotionReport]:
     """Does not answer at all."""
+    bench.mute = True
     return iter(())
 
 
-def take_up_and_die(_bench: LoopBench, _plan: Plan) -> Iterator[MotionReport]:
+def take_up_and_die(bench: LoopBench, _plan: Plan) -> Iterator[MotionReport]:
+    bench.mute = True
     yield MotionReport(state=MotionState.EXECUTING)
 
 
 def restart(_bench: LoopBench, _plan: Plan) -> Iterator[MotionReport]:
     """Takes the plan up and knows nothing of it any more."""
     yield MotionReport(state=MotionState.EXECUTING)
-    while True:
-        yield MotionReport(plan_id="-", state=MotionState.IDLE)
 
 
 def run_until_stopped(bench: LoopBench, plan: Plan) -> Iterator[MotionReport]:

@@ -21,7 +21,13 @@ def test_a_knocked_block_is_planned_for_anew() -> None:
 
 
 @pytest.mark.parametrize(
-    "reason", [MotionReason.GRASP_LOST, MotionReason.TRACKING_LOST, MotionReason.TIMEOUT]
+    "reason",
+    [
+        MotionReason.GRASP_LOST,
+        MotionReason.TRACKING_LOST,
+        MotionReason.TIMEOUT,
+        MotionReason.NO_JOINT_STATES,
+    ],
 )
 def test_a_lost_grasp_is_looked_at_and_planned_for_anew(reason: MotionReason) -> None:
     bench = LoopBench(fail(reason, "the block slipped", after=1))
@@ -48,7 +54,7 @@ def test_an_infeasible_motion_is_tried_once_more_from_new_poses() -> None:
     bench = LoopBench(infeasible, infeasible)
     outcome = bench.achieve()
     assert (outcome.status, outcome.module) == (Status.MOTION_FAILED, "motion")
-    assert outcome.message == sentence
+    assert outcome.message.startswith(sentence)
     assert outcome.motion.reason == MotionReason.INFEASIBLE
     assert len(bench.plans) == 2
 
@@ -63,14 +69,13 @@ def test_infeasible_twice_with_something_else_between_is_no_reason_to_give_up() 
     ("reason", "status"),
     [
         (MotionReason.INVALID_PLAN, Status.MOTION_FAILED),
-        (MotionReason.NO_JOINT_STATES, Status.MOTION_FAILED),
         (MotionReason.INTERNAL_ERROR, Status.MOTION_FAILED),
         (MotionReason.BUSY, Status.BUSY),
     ],
 )
 def test_a_motion_that_fails_for_good_ends_the_loop(reason: MotionReason, status: Status) -> None:
-    bench = LoopBench(fail(reason, "no joint states arrive"))
+    bench = LoopBench(fail(reason, "it cannot be done"))
     outcome = bench.achieve()
     assert (outcome.status, outcome.module) == (status, "motion")
-    assert outcome.message == "no joint states arrive"
+    assert outcome.message.startswith("it cannot be done. ")
     assert len(bench.plans) == 1

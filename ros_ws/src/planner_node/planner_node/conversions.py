@@ -64,9 +64,9 @@ def plan_to_message(plan: Plan) -> SymbolicPlan:
     )
 
 
-def stop_to_message(plan: Plan, stamp: int) -> SymbolicPlan:
+def stop_to_message(plan_id: str, stamp: int) -> SymbolicPlan:
     """The request to stop a plan: its name without moves; ``stamp`` is the ROS time [ns]."""
-    return SymbolicPlan(header=_header(stamp, plan.scene.frame_id), plan_id=plan.plan_id)
+    return SymbolicPlan(header=_header(stamp, ""), plan_id=plan_id)
 
 
 def predicted_to_messages(plan: Plan) -> list[SceneGraphMsg]:
@@ -75,24 +75,26 @@ def predicted_to_messages(plan: Plan) -> list[SceneGraphMsg]:
 
 
 class FeedbackWriter:
-    """Progress as feedback of AchieveGoal; a plan is converted once, however often it is sent."""
+    """Progress as feedback of AchieveGoal; a plan and its scenes go into the first on it only."""
 
     def __init__(self) -> None:
         self._plan: Plan | None = None
-        self._message = AchieveGoal.Feedback()
 
     def message(self, progress: Progress) -> AchieveGoal.Feedback:
-        """The feedback; the same object each time."""
-        message, plan = self._message, progress.plan
-        if plan is not None and plan is not self._plan:
+        """The feedback on a progress."""
+        motion = progress.motion
+        message = AchieveGoal.Feedback(
+            stage=int(progress.stage),
+            message=progress.message,
+            motion=report_to_message(motion, stamp_from_nanoseconds(motion.stamp)),
+            replans=progress.replans,
+        )
+        plan = progress.plan
+        if plan is self._plan:
+            message.plan.plan_id = plan.plan_id if plan else ""
+        elif plan is not None:
             self._plan = plan
             message.plan, message.states = plan_to_message(plan), predicted_to_messages(plan)
-        message.stage = int(progress.stage)
-        message.message = progress.message
-        message.motion = report_to_message(
-            progress.motion, stamp_from_nanoseconds(progress.motion.stamp)
-        )
-        message.replans = progress.replans
         return message
 
 

@@ -163,15 +163,40 @@ class MotionBusyError(BusyError):
 
 
 class MotionSilentError(PlannerError):
-    """The motion node does not answer about ``plan_id``; ``taken_up``: it did so before."""
+    """The motion node does not answer about ``plan_id``.
+
+    Attributes:
+        taken_up: it did so before.
+        speaks: it reports all the same, only not on this plan.
+        untouched: nothing can have moved for this plan: nobody hears it, or the motion node was
+            idle all the time.
+    """
 
     status = "MOTION_SILENT"
     module = "motion"
 
-    def __init__(self, problem: str, plan_id: str, taken_up: bool) -> None:
+    def __init__(
+        self, problem: str, plan_id: str, taken_up: bool, speaks: bool, untouched: bool = False
+    ) -> None:
         super().__init__(problem)
         self.plan_id = plan_id
         self.taken_up = taken_up
+        self.speaks = speaks
+        self.untouched = untouched
+
+
+class ArmStuckError(PlannerError):
+    """The arm is not at home or holds something, and cannot be brought home."""
+
+    status = "ARM_STUCK"
+    module = "motion"
+
+
+class ConflictError(PlannerError):
+    """Two nodes do the work of one in this domain; the message names them."""
+
+    status = "CONFLICT"
+    module = ""
 
 
 class TooManyReplansError(PlannerError):

@@ -8,7 +8,7 @@ import threading
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.action import ActionServer, CancelResponse
@@ -16,12 +16,13 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.node import Node
 from tamp_interfaces.action import AchieveGoal
-from tamp_interfaces.msg import MotionStatus, SceneGraph, SymbolicPlan
+from tamp_interfaces.msg import MotionStatus, SceneGraph
 from tamp_interfaces.srv import PlanToGoal
 from tamp_runtime.messages.motion_status import report_from_message
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
-from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE
+from tamp_runtime.presence import Presence
+from tamp_runtime.qos import NEWEST, STATUS
 
 from scene_graph import Stacks
 
@@ -32,13 +33,14 @@ from .conversions import (
     predicted_to_messages,
     read_goal,
     sighting_from_message,
-    stop_to_message,
 )
-from .errors import BusyError, PlannerError, SearchError
+from .errors import BusyError, ConflictError, NotConfidentError, PlannerError, SearchError
 from .goals import Goal
 from .image_client import ImageClient
-from .loop import ClosedLoop, MotionLink, Outcome, Plan, Progress, SceneWatch, Status, plan_for
+from .loop import ClosedLoop, MotionLink, Outcome, Progress, SceneWatch, Status, plan_for
+from .loop.account import in_the_view
 from .parameters import PARAMETERS
+from .plan_publisher import PlanPublisher
 from .search import make_plan
 from .settings import Settings
 
@@ -53,12 +55,16 @@ class PlannerNode(Node):
 
     Subscribed topics:
         scene_graph (tamp_interfaces/SceneGraph): what perception sees.
-        motion_status (tamp_interfaces/MotionStatus): what becomes of a plan.
+        motion_status (tamp_interfaces/MotionStatus, transient local): what becomes of a plan, and
+            where the arm is.
+        diagnostics (diagnostic_msgs/DiagnosticArray): who lives; with two nodes that do the work of
+            one, requests are refused with the status CONFLICT.
 
     Published topics:
         symbolic_plan (tamp_interfaces/SymbolicPlan, latched): the plan to carry out; without moves:
-            the plan to stop. Its header has the time of publication, so that a motion node that
-            starts later knows it for an old one.
+            the plan to stop, or the way home. A plan that is not taken up by a motion node that
+            reports to be idle is published again, under the same name.
+        diagnostics (diagnostic_msgs/DiagnosticArray): that it lives.
 
     Services:
         plan_to_goal (tamp_interfaces/srv/PlanToGoal): plans from the newest confident scene graph,
@@ -69,7 +75,8 @@ class PlannerNode(Node):
 
     Actions:
         achieve_goal (tamp_interfaces/action/AchieveGoal): the closed loop. A goal that comes while
-            another is worked on is accepted and aborted with the status BUSY, for the sentence.
+            another is worked on is accepted and aborted with the status BUSY, for the sentence. A
+            plan that this planner does not follow, such as that of an earlier life, is stopped.
 
     Parameters: see :data:`planner_node.parameters.PARAMETERS`.
     """
@@ -79,19 +86,20 @@ class PlannerNode(Node):
         super().__init__("planner_node", **kwargs)
         self._settings = Settings()
         self._settings.update(declare_parameters(self, PARAMETERS, self._settings.update))
-        plans = _PlanPublisher(self)
+        plans = PlanPublisher(self)
         self._scenes = SceneWatch(self._settings, plans.now)
         self._motion = MotionLink(self._settings, plans, plans.now)
         self._images = ImageClient(self, self._settings)
         self._claim_lock = threading.Lock()
-        self._claimed_by = ""
+        self._claim: _Claim | None = None
+        self._presence = Presence(self, "planner_node")
 
         topics = MutuallyExclusiveCallbackGroup()
         self.create_subscription(
             SceneGraph, "scene_graph", self._on_scene_graph, NEWEST, callback_group=topics
         )
         self.create_subscription(
-            MotionStatus, "motion_status", self._on_motion_status, RELIABLE, callback_group=topics
+            MotionStatus, "motion_status", self._on_motion_status, STATUS, callback_group=topics
         )
         self.create_service(
             PlanToGoal,
@@ -141,11 +149,19 @@ class PlannerNode(Node):
         return response
 
     def _plan_to_goal(self, request: PlanToGoal.Request, response: PlanToGoal.Response) -> None:
-        self._check_free()
+        self._check_conflict()
+        self._check_free(self._motion.check_free)
         resolve = read_goal(
             request, functools.partial(self._images.interpret, cancelled=self._is_shut_down)
         )
-        scene = self._scenes.latest(self._motion.last_end)
+        try:
+            scene = self._scenes.latest(self._motion.last_end)
+        except NotConfidentError as error:
+            if clause := in_the_view(self._motion.newest):
+                raise NotConfidentError(
+                    f"{error}; {clause}; achieve_goal brings it home"
+                ) from error
+            raise
         goal = resolve(scene.stacks)
         settings = self._settings
         found = make_plan(
@@ -165,7 +181,9 @@ class PlannerNode(Node):
         response.status = int(Status.SUCCESS)
         response.message = f"{len(plan.moves)} moves to '{goal}'"
         if request.execute:
-            with self._claimed("a plan of plan_to_goal"):
+            self._check_conflict()
+            claim = _Claim("a plan of plan_to_goal", self._is_shut_down)
+            with self._claimed(claim, self._motion.check_free):
                 self._motion.start(plan)
             response.message += f"; published as plan {plan.plan_id}"
 
@@ -183,21 +201,21 @@ class PlannerNode(Node):
                 request, functools.partial(self._images.interpret, cancelled=cancelled)
             )
 
+        motion, conflict = self._motion, self._presence.conflict
         loop = ClosedLoop(
-            self._settings, self._scenes, self._motion, report, cancelled, self._is_shut_down
+            *(self._settings, self._scenes, motion, report, cancelled, self._is_shut_down),
+            conflict=conflict,
         )
+        claim = _Claim(f"achieve_goal '{request.goal or 'goal image'}'", cancelled)
         try:
-            with self._claimed(f"achieve_goal '{request.goal or 'goal image'}'"):
+            # A plan that is not this planner's own is stopped by the loop.
+            with self._claimed(claim, motion.check_own):
                 outcome = loop.run(read)
         except BusyError as error:
-            outcome = Outcome(Status[error.status], str(error), error.module)
+            outcome = Outcome(Status[error.status], str(error), error.module, motion=motion.newest)
         except Exception as error:
-            outcome = replace(
-                loop.outcome,
-                status=Status.INTERNAL_ERROR,
-                message=self._internal_error(error),
-                module="planner",
-            )
+            message = self._internal_error(error)
+            outcome = loop.give_up(Status.INTERNAL_ERROR, message, "planner")
         self._finish(handle, outcome)
         return outcome_to_message(outcome)
 
@@ -214,20 +232,28 @@ class PlannerNode(Node):
             handle.abort()
 
     @contextmanager
-    def _claimed(self, claimant: str) -> Iterator[None]:
+    def _claimed(self, claim: _Claim, check: Callable[[], None]) -> Iterator[None]:
         """One goal at a time; raises BusyError while another is worked on or carried out."""
         with self._claim_lock:
-            self._check_free()
-            self._claimed_by = claimant
+            self._check_free(check)
+            self._claim = claim
         try:
             yield
         finally:
-            self._claimed_by = ""
+            self._claim = None
 
-    def _check_free(self) -> None:
-        if self._claimed_by:
-            raise BusyError(f"{self._claimed_by} is worked on; wait until it ends, or cancel it")
-        self._motion.check_free()
+    def _check_free(self, check: Callable[[], None]) -> None:
+        """Raises BusyError; ``check`` raises it where the arm is not free."""
+        claim = self._claim
+        if claim is not None and claim.is_cancelled():
+            raise BusyError(f"{claim.name} is being cancelled; wait until the arm rests")
+        if claim is not None:
+            raise BusyError(f"{claim.name} is worked on; wait until it ends, or cancel it")
+        check()
+
+    def _check_conflict(self) -> None:
+        if conflict := self._presence.conflict():
+            raise ConflictError(conflict)
 
     def _internal_error(self, error: Exception) -> str:
         """Logs a defect and tells it in a sentence."""
@@ -241,27 +267,12 @@ class PlannerNode(Node):
         return not self.context.ok()
 
 
-class _PlanPublisher:
-    """The topic symbolic_plan, and the clock of its node."""
+@dataclass(frozen=True)
+class _Claim:
+    """Who has the planner to himself, and whether he has been asked to let go."""
 
-    def __init__(self, node: Node) -> None:
-        self._clock = node.get_clock()
-        self._publisher = node.create_publisher(SymbolicPlan, "symbolic_plan", LATCHED)
-
-    def publish(self, plan: Plan) -> None:
-        self._publisher.publish(plan_to_message(plan))
-
-    def publish_stop(self, plan: Plan) -> None:
-        self._publisher.publish(stop_to_message(plan, self.now()))
-
-    def subscribers(self) -> int:
-        count: int = self._publisher.get_subscription_count()
-        return count
-
-    def now(self) -> int:
-        """The ROS time [ns]; 0 while simulated time has not arrived."""
-        nanoseconds: int = self._clock.now().nanoseconds
-        return nanoseconds
+    name: str
+    is_cancelled: Callable[[], bool]
 
 
 def run() -> int:

@@ -4,8 +4,10 @@
 from .action_models import ActionModel, apply_to_graph
 from .errors import (
     AmbiguousObjectError,
+    ArmStuckError,
     BusyError,
     CancelledError,
+    ConflictError,
     ContradictoryGoalError,
     GoalImageError,
     InvalidGoalError,
@@ -55,9 +57,11 @@ __all__ = [
     "ALGORITHMS",
     "ActionModel",
     "AmbiguousObjectError",
+    "ArmStuckError",
     "BusyError",
     "CancelledError",
     "ClosedLoop",
+    "ConflictError",
     "ContradictoryGoalError",
     "Goal",
     "GoalImageError",

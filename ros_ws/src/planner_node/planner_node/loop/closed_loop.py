@@ -6,36 +6,38 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import Any, Final, NoReturn
+from typing import Any
 
-from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
+from tamp_runtime.motion_report import MotionReport
 
 from scene_graph import Stacks, format_stacks
 
 from ..errors import (
     CancelledError,
-    MotionBusyError,
-    MotionFailedError,
+    ConflictError,
     MotionSilentError,
+    NoSceneGraphError,
+    NotConfidentError,
+    ObjectLostError,
     PlannerError,
     TooManyReplansError,
 )
 from ..goals.goal import Goal
 from ..search import SearchResult, make_plan
 from ..settings import Settings
+from .account import account_for, describe_difference, in_the_view
+from .arm_home import ArmHome
 from .clock import Clock
 from .motion_link import MotionLink
 from .plan import Plan, plan_for
-from .report import NO_REPORT, Outcome, Progress, Stage, Status
+from .plan_run import PlanRun
+from .report import Outcome, Progress, Stage, Status
 from .scene import Scene
 from .scene_watch import SceneWatch
+from .teller import Teller
 
-#: The scene is not what it was planned on: look again and plan anew.
-REPLAN_REASONS: Final = (
-    MotionReason.GRASP_LOST,
-    MotionReason.TRACKING_LOST,
-    MotionReason.TIMEOUT,
-)
+#: A refused picture; an arm in the view can be why.
+_UNSEEN = (NoSceneGraphError, NotConfidentError, ObjectLostError)
 
 
 class ClosedLoop:
@@ -54,17 +56,30 @@ class ClosedLoop:
         cancelled: Callable[[], bool],
         shut_down: Callable[[], bool],
         clock: Clock | None = None,
+        conflict: Callable[[], str] = lambda: "",
     ) -> None:
-        """``report`` gets every progress; ``cancelled`` includes ``shut_down``."""
+        """See :class:`ClosedLoop`.
+
+        Args:
+            report: gets every progress.
+            cancelled: includes ``shut_down``.
+            conflict: a sentence while two nodes do the work of one; nothing is claimed then.
+        """
         self._settings = settings
         self._scenes = scenes
         self._motion = motion
-        self._report = report
         self._cancelled = cancelled
-        self._shut_down = shut_down
+        self._conflict = conflict
         self._clock = clock or Clock()
+        self._teller = Teller(report, self._clock)
+        self._arm = ArmHome(
+            settings, motion, self._teller.say, self._because, self._check, self._stopped
+        )
+        self._runs = PlanRun(
+            *(settings, motion, self._teller, self._because),
+            *(cancelled, conflict, self._stopped, shut_down),
+        )
         self._requested = scenes.now()
-        self._progress = Progress()
         self.outcome = Outcome()
 
     def run(self, read: Callable[[], Callable[[Stacks], Goal]]) -> Outcome:
@@ -75,9 +90,27 @@ class ClosedLoop:
         """
         try:
             status, message = self._achieve(read)
+            if conflict := self._conflict():
+                raise ConflictError(conflict)
             self._note(status=status, message=message)
         except PlannerError as error:
-            self._note(status=Status[error.status], message=str(error), module=error.module)
+            if isinstance(error, MotionSilentError):
+                self._glance()
+            told = isinstance(error, CancelledError | TooManyReplansError)
+            if not told and str(error) not in self.outcome.causes:
+                self._because(str(error))
+            self.give_up(Status[error.status], str(error), error.module)
+        self._note(motion=self._motion.last_on(self.outcome.motion))
+        return self.outcome
+
+    def give_up(self, status: Status, message: str, module: str) -> Outcome:
+        """The outcome of a run that failed; its message tells what state it leaves."""
+        motion = self._motion
+        self._note(motion=motion.last_on(self.outcome.motion))
+        # A goal that makes no sense leaves nothing behind that its sentence had to tell.
+        if self.outcome.moves_planned or (module != "planner" and motion.knows_arm):
+            message = account_for(message, self.outcome, motion.newest, motion.silence)
+        self._note(status=status, message=message, module=module)
         return self.outcome
 
     def _achieve(self, read: Callable[[], Callable[[Stacks], Goal]]) -> tuple[Status, str]:
@@ -87,44 +120,96 @@ class ClosedLoop:
         scene = self._look(Stage.PERCEIVING, "waiting for a confident scene graph")
         goal = resolve(scene.stacks)
         self._note(initial=scene)
-        plans, infeasible, reason = 0, False, ""
+        plans = 0
         while not goal.holds(scene.stacks):
             if plans:
-                self._count_replan(scene, reason)
+                self._count_replan(scene)
             found = self._plan(scene, goal)
             if not plans:
                 self._note(moves_planned=len(found.moves))
             plans += 1
-            end = self._move(plan_for(scene, goal, found, self._scenes.now()))
-            reason = self._judge(end, infeasible)
-            infeasible = bool(reason) and end.reason == MotionReason.INFEASIBLE
-            scene = self._look(
-                Stage.CONFIRMING, reason or "looking whether the goal is reached", goal.names
-            )
+            scene = self._carry_out(plan_for(scene, goal, found, self._scenes.now()), goal)
         seen = format_stacks(scene.stacks)
         if not plans:
             return Status.ALREADY_TRUE, f"nothing to do: '{goal}' holds in {seen}"
         return Status.SUCCESS, f"the camera confirms '{goal}': {seen}"
 
-    def _look(self, stage: Stage, message: str, needed: frozenset[str] = frozenset()) -> Scene:
+    def _carry_out(self, plan: Plan, goal: Goal) -> Scene:
+        """Has a plan carried out, and looks what has become of it.
+
+        The look is taken even where the motion failed for good: the goal may be reached all the
+        same, and if not, the answer tells what was seen last.
+        """
+        self._check()
+        before = len(self.outcome.causes)
+        started = self._clock.now()
+        try:
+            end = self._runs.carry_out(plan)
+        finally:
+            self._add_up(self._teller.progress.motion, self._clock.now() - started)
+        failure = self._runs.judge(end)
+        reason = "; ".join(self.outcome.causes[before:])
+        try:
+            message = reason or "looking whether the goal is reached"
+            scene = self._look(Stage.CONFIRMING, message, goal.names, moved=True)
+        except _UNSEEN as error:
+            if failure is None:
+                raise
+            self._because(str(error))
+            raise failure from error
+        if difference := describe_difference(plan, end.report, scene):
+            self._because(difference)
+        silence = end.silence
+        if silence is not None and not silence.taken_up and scene.stacks == plan.scene.stacks:
+            failure = silence
+        if failure is not None and not goal.holds(scene.stacks):
+            raise failure
+        return scene
+
+    def _look(
+        self,
+        stage: Stage,
+        message: str,
+        needed: frozenset[str] = frozenset(),
+        moved: bool = False,
+    ) -> Scene:
         """The scene after the request and the last motion, with the ``needed`` objects in it."""
         self._tell(stage, message)
-        after = max(self._requested, self._motion.last_end)
         with self._timed("perceive_seconds"):
-            scene = self._scenes.wait(self._cancelled, after, needed)
+            self._arm.settle(moved)
+            self._check()
+            if self._teller.progress.message != message:
+                self._tell(stage, message)
+            after = max(self._requested, self._motion.last_end)
+            try:
+                scene = self._scenes.wait(self._stopped, after, needed)
+            except CancelledError:
+                self._check()
+                raise
+            except _UNSEEN as error:
+                if clause := in_the_view(self._motion.newest):
+                    error.args = (f"{error}; {clause}",)
+                raise
         self._note(final=scene)
         return scene
 
-    def _count_replan(self, scene: Scene, reason: str) -> None:
+    def _glance(self) -> None:
+        """Notes the newest scene, if there is one, where nobody can be waited for any more."""
+        try:
+            self._note(final=self._scenes.latest(self._requested))
+        except PlannerError:
+            return
+
+    def _count_replan(self, scene: Scene) -> None:
         replans = self.outcome.replans
         if replans >= self._settings.max_replans:
             raise TooManyReplansError(
                 f"gave up after {replans} replans; the camera last saw "
-                f"{format_stacks(scene.stacks)}{f' after: {reason}' if reason else ''}",
+                f"{format_stacks(scene.stacks)}",
                 replans,
             )
         self._note(replans=replans + 1)
-        self._progress = replace(self._progress, replans=replans + 1)
+        self._teller.progress = replace(self._teller.progress, replans=replans + 1)
 
     def _plan(self, scene: Scene, goal: Goal) -> SearchResult:
         self._tell(Stage.PLANNING, f"searching from {format_stacks(scene.stacks)} to '{goal}'")
@@ -137,29 +222,6 @@ class ClosedLoop:
                 self._settings.search_algorithm,
             )
 
-    def _move(self, plan: Plan) -> MotionReport:
-        """Hands a plan to the motion node and follows it to its end."""
-        moves = ", ".join(
-            f"{block} to stack{move.target}" for block, move in zip(plan.blocks, plan.moves)
-        )
-        self._progress = replace(self._progress, plan=plan, motion=NO_REPORT)
-        self._tell(Stage.OPTIMISING, f"{len(plan.moves)} moves: {moves}")
-        started = self._clock.now()
-        self._motion.start(plan)
-        try:
-            end = self._motion.follow(self._on_report, self._cancelled)
-            if end is None:
-                self._stop(plan)
-        except CancelledError:
-            raise
-        except Exception:
-            # Whatever went wrong here, the motion shall not go on with a plan that is given up.
-            self._motion.stop(plan)
-            raise
-        finally:
-            self._add_up(self._progress.motion, self._clock.now() - started)
-        return end
-
     def _add_up(self, last: MotionReport, elapsed: float) -> None:
         """Notes what became of a plan; ``elapsed`` [s] is motion optimisation and execution."""
         outcome = self.outcome
@@ -171,47 +233,24 @@ class ClosedLoop:
             execute_seconds=outcome.execute_seconds + execution,
         )
 
-    def _stop(self, plan: Plan) -> NoReturn:
-        """Stops the motion, waits until it rests, and raises CancelledError."""
-        self._tell(Stage.CANCELLING, "waiting until the arm rests and holds nothing")
-        self._motion.stop(plan)
-        try:
-            end = self._motion.follow(self._on_report, self._shut_down)
-        except MotionSilentError as error:
-            if error.taken_up:
-                raise
-            raise CancelledError(f"cancelled before anything moved; {error}") from error
-        moved = f"{self._progress.motion.moves_done} of {len(plan.moves)} moves were carried out"
-        outcome = f": {end.message}" if end is not None and end.message else ""
-        raise CancelledError(f"cancelled; {moved}{outcome}")
+    def _check(self) -> None:
+        """Raises CancelledError or ConflictError if the run is to end."""
+        if self._cancelled():
+            raise CancelledError("cancelled")
+        if conflict := self._conflict():
+            raise ConflictError(conflict)
 
-    def _judge(self, end: MotionReport, infeasible_before: bool) -> str:
-        """Why to plan anew, or an empty string if the plan was carried out; raises if neither."""
-        if end.state == MotionState.SUCCEEDED:
-            return ""
-        if end.state == MotionState.CANCELLED:
-            raise CancelledError(f"somebody else stopped the motion: {end.message}")
-        sentence = end.message or "the motion node gives no reason"
-        if end.reason in REPLAN_REASONS:
-            return sentence
-        # The poses are seen anew, which may be enough; from the same poses it would fail again.
-        if end.reason == MotionReason.INFEASIBLE and not infeasible_before:
-            return sentence
-        if end.reason == MotionReason.BUSY:
-            raise MotionBusyError(sentence, end.plan_id)
-        raise MotionFailedError(sentence)
+    def _stopped(self) -> bool:
+        """Whether the run is to end; asked in every wait, so that the feedback goes on in it."""
+        self._teller.beat()
+        return self._cancelled() or bool(self._conflict())
 
-    def _on_report(self, report: MotionReport) -> None:
-        stage = self._progress.stage
-        if stage != Stage.CANCELLING:
-            optimising = report.state == MotionState.OPTIMISING
-            stage = Stage.OPTIMISING if optimising else Stage.EXECUTING
-        self._progress = replace(self._progress, motion=report)
-        self._tell(stage, report.message)
+    def _because(self, cause: str) -> None:
+        """Notes why a plan was given up, failed or is made anew."""
+        self._note(causes=(*self.outcome.causes, cause))
 
     def _tell(self, stage: Stage, message: str) -> None:
-        self._progress = replace(self._progress, stage=stage, message=message)
-        self._report(self._progress)
+        self._teller.tell(stage, message)
 
     def _note(self, **changes: Any) -> None:
         self.outcome = replace(self.outcome, **changes)

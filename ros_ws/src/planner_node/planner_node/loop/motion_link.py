@@ -4,25 +4,27 @@
 from __future__ import annotations
 
 import threading
+import uuid
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Final, Protocol
 
-from tamp_runtime.motion_report import MotionReport, MotionState
+from tamp_runtime.motion_report import ArmPlace, MotionReport, MotionState
 
 from ..errors import MotionBusyError, MotionSilentError
 from ..settings import Settings
 from .clock import Clock
+from .execution import STALE_SECONDS, Execution, Foreign, state_of
 from .plan import Plan
+from .report import NO_REPORT
 from .scene_watch import POLL_SECONDS
 
 RUNNING: Final = (MotionState.OPTIMISING, MotionState.EXECUTING)
 
-#: A plan that nobody subscribes to is given up after this long, which discovery never takes [s].
-DISCOVERY_SECONDS: Final = 5.0
-#: A motion node needs longer than this to restart; an idle report that follows a report on the
-#: plan sooner was on its way before [s].
-RESTART_SECONDS: Final = 0.5
+#: What was not taken up is published again after this long [s].
+RESEND_SECONDS: Final = 1.0
+#: A stop may have been lost, too; it is published again while the plan goes on [s].
+STOP_AGAIN_SECONDS: Final = 3.0
 
 
 class PlanTopic(Protocol):
@@ -31,32 +33,11 @@ class PlanTopic(Protocol):
     def publish(self, plan: Plan) -> None:
         """Asks the motion node to carry out a plan."""
 
-    def publish_stop(self, plan: Plan) -> None:
-        """Asks the motion node to stop: the same plan without moves."""
+    def publish_stop(self, plan_id: str) -> None:
+        """Asks the motion node to stop a plan and go home: its name without moves."""
 
     def subscribers(self) -> int:
         """How many hear it."""
-
-
-@dataclass
-class _Execution:
-    """One plan of ours, from its publication until the motion node reports its end."""
-
-    plan_id: str
-    published: float
-    heard: float | None = None
-    report: MotionReport | None = None
-    outcome: MotionReport | None = None
-    updates: int = 0
-    lost: bool = False
-
-
-@dataclass
-class _Foreign:
-    """The newest report on a plan of somebody else, such as this node before a restart."""
-
-    report: MotionReport
-    heard: float
 
 
 class MotionLink:
@@ -78,9 +59,13 @@ class MotionLink:
         self._now = now
         self._clock = clock or Clock()
         self._changed = threading.Condition()
-        self._execution: _Execution | None = None
-        self._foreign: _Foreign | None = None
+        self._execution: Execution | None = None
+        self._foreign: Foreign | None = None
+        self._newest = NO_REPORT
+        self._heard: float | None = None
+        self._reports = 0
         self._last_end = 0
+        self._knows_arm = False
 
     @property
     def last_end(self) -> int:
@@ -88,10 +73,54 @@ class MotionLink:
         with self._changed:
             return self._last_end
 
+    @property
+    def knows_arm(self) -> bool:
+        """Whether the motion node has ever said where the arm is; older ones never do."""
+        with self._changed:
+            return self._knows_arm
+
+    @property
+    def reports(self) -> int:
+        """How many have been received, beats included."""
+        with self._changed:
+            return self._reports
+
+    @property
+    def silence(self) -> float | None:
+        """For how long the motion node has said nothing at all [s]; None if it never has."""
+        with self._changed:
+            return None if self._heard is None else self._clock.now() - self._heard
+
+    @property
+    def newest(self) -> MotionReport:
+        """What was heard last, beats included; the arm is UNKNOWN where that is long ago."""
+        with self._changed:
+            if self._heard is None or self._clock.now() - self._heard <= STALE_SECONDS:
+                return self._newest
+            return replace(self._newest, arm=ArmPlace.UNKNOWN)
+
+    @property
+    def foreign(self) -> str:
+        """The plan under way that this planner does not follow; empty if there is none."""
+        with self._changed:
+            foreign = self._running_foreign()
+            return foreign.report.plan_id if foreign else ""
+
+    def last_on(self, report: MotionReport) -> MotionReport:
+        """What was said on a plan, with where the arm is now and what it holds."""
+        newest = self.newest
+        if not report.plan_id:
+            return newest
+        stamp = max(report.stamp, newest.stamp)
+        return replace(report, arm=newest.arm, held=newest.held, hand=newest.hand, stamp=stamp)
+
     def receive(self, report: MotionReport) -> None:
         """Takes what the motion node reports, on whatever plan."""
         with self._changed:
             heard = self._clock.now()
+            self._newest, self._heard = report, heard
+            self._reports += 1
+            self._knows_arm = self._knows_arm or report.arm != ArmPlace.UNKNOWN
             if report.state.ended:
                 # A stamp in the future is of another clock, and would make every image look old.
                 now = self._now()
@@ -99,57 +128,103 @@ class MotionLink:
             execution = self._execution
             ours = execution is not None and report.plan_id == execution.plan_id
             if report.state in RUNNING:
-                self._foreign = None if ours else _Foreign(report, heard)
+                self._foreign = None if ours else Foreign(report, heard)
             elif self._foreign and report.plan_id in ("", self._foreign.report.plan_id):
                 self._foreign = None
-            if execution is None or execution.outcome is not None:
-                pass
-            elif report.state == MotionState.IDLE or (report.state in RUNNING and not ours):
-                # One motion node does one thing: if it is idle or carries out another plan after
-                # it had taken up ours, then ours is lost.
-                if execution.heard is not None and heard > execution.heard + RESTART_SECONDS:
-                    execution.lost = True
-            elif ours:
-                execution.heard = heard
-                execution.report = report
-                execution.updates += 1
-                if report.state.ended:
-                    execution.outcome = report
+            resend = None
+            if execution is not None and execution.outcome is None:
+                if ours:
+                    execution.take(report, heard)
+                elif report.state == MotionState.IDLE or report.state in RUNNING:
+                    execution.miss(heard)
+                    resend = self._resend(execution, report, heard)
             self._changed.notify_all()
+        if resend is not None:
+            resend()
+
+    def _resend(
+        self, execution: Execution, report: MotionReport, heard: float
+    ) -> Callable[[], None] | None:
+        """How to publish again what an idle motion node has not taken up; None if it is not due.
+
+        A motion node that just starts ignores what was published before, and a message can be lost.
+        """
+        if report.state != MotionState.IDLE or execution.heard is not None or execution.stopping:
+            return None
+        if heard < execution.sent + RESEND_SECONDS or self._silence_about(execution):
+            return None
+        execution.sent, execution.times_sent = heard, execution.times_sent + 1
+        return execution.send
 
     def check_free(self) -> None:
         """Raises MotionBusyError while a plan is being carried out, whoever asked for it."""
+        self.check_own()
+        with self._changed:
+            if foreign := self._running_foreign():
+                report = foreign.report
+                raise MotionBusyError(
+                    f"the motion node carries out plan {report.plan_id}, which this planner does "
+                    f"not follow ({state_of(report)}); wait until it ends, or stop it: "
+                    "ros2 run planner_node stop",
+                    report.plan_id,
+                )
+
+    def check_own(self) -> None:
+        """Raises MotionBusyError while a plan of this planner is being carried out."""
         with self._changed:
             self._give_up_if_silent()
-            execution, foreign = self._execution, self._foreign
-            if execution and execution.outcome is None:
-                raise MotionBusyError(
-                    f"plan {execution.plan_id} is being carried out "
-                    f"({self._state(execution.report)}); wait until it ends",
-                    execution.plan_id,
+            execution = self._execution
+            if execution is None or execution.outcome is not None:
+                return
+            if execution.stopping is not None:
+                problem = "is being stopped; wait until the arm rests"
+            else:
+                problem = (
+                    f"is being carried out ({state_of(execution.report)}); wait until it ends, or "
+                    "stop it: ros2 run planner_node stop"
                 )
-            silence = self._settings.motion_silence_timeout
-            if foreign and self._clock.now() < foreign.heard + silence:
-                raise MotionBusyError(
-                    f"the motion node carries out plan {foreign.report.plan_id}, which this "
-                    f"planner does not follow ({self._state(foreign.report)}); wait until it ends",
-                    foreign.report.plan_id,
-                )
+            raise MotionBusyError(f"plan {execution.plan_id} {problem}", execution.plan_id)
 
     def start(self, plan: Plan) -> None:
         """Publishes a plan and follows it from now on."""
-        with self._changed:
-            self._execution = _Execution(plan.plan_id, self._clock.now())
-        self._plans.publish(plan)
+        self._begin(plan.plan_id, lambda: self._plans.publish(plan))
 
-    def stop(self, plan: Plan) -> None:
-        """Asks the motion node to stop; what becomes of the plan is followed on."""
-        self._plans.publish_stop(plan)
+    def go_home(self) -> None:
+        """Asks for the way home: the stop of a plan that nobody carries out; followed like one."""
+        plan_id = f"home-{uuid.uuid4().hex[:12]}"
+        self._begin(plan_id, lambda: self._plans.publish_stop(plan_id))
+
+    def _begin(self, plan_id: str, send: Callable[[], None]) -> None:
+        with self._changed:
+            self._execution = Execution(plan_id, self._clock.now(), send)
+        send()
+
+    def stop(self, plan_id: str) -> None:
+        """Asks the motion node to stop; what becomes of a plan that is followed is followed on."""
+        with self._changed:
+            if self._execution and self._execution.plan_id == plan_id:
+                self._execution.stopping = self._clock.now()
+        self._plans.publish_stop(plan_id)
+
+    def forget(self) -> None:
+        """Follows nothing any more; if it goes on, it counts like a plan of somebody else."""
+        with self._changed:
+            self._execution = None
+
+    def wait(self, until: Callable[[], bool], seconds: float, stopped: Callable[[], bool]) -> bool:
+        """Waits for something that the motion node reports; False: ``stopped``, or in vain."""
+        deadline = self._clock.now() + seconds
+        while not until():
+            if stopped() or self._clock.now() >= deadline:
+                return False
+            with self._changed:
+                self._clock.wait(self._changed, POLL_SECONDS)
+        return True
 
     def follow(
         self, on_report: Callable[[MotionReport], None], stopped: Callable[[], bool]
     ) -> MotionReport | None:
-        """Waits for the end of the started plan, and returns the report of it.
+        """Waits for the end of what was started, and returns the report of it.
 
         Args:
             on_report: called with each new report; one that is overtaken may be left out.
@@ -169,47 +244,38 @@ class MotionLink:
                 told = execution.updates
                 outcome = execution.outcome
                 silence = self._give_up_if_silent()
+                stop_again = execution.stop_is_due(self._clock.now(), STOP_AGAIN_SECONDS)
             if news is not None:
                 on_report(news)
             if outcome:
                 return outcome
             if silence:
-                raise MotionSilentError(silence, execution.plan_id, execution.report is not None)
+                raise silence
             if stopped():
                 return None
+            if stop_again:
+                self._plans.publish_stop(execution.plan_id)
 
-    def _give_up_if_silent(self) -> str:
-        """A sentence if the motion node is silent about the plan, otherwise an empty string.
+    def _give_up_if_silent(self) -> MotionSilentError | None:
+        """An error if the motion node is silent about the plan.
 
         What it reports on the plan later counts like a report on anybody's plan.
         """
         execution = self._execution
         if execution is None or execution.outcome is not None:
-            return ""
-        silence = self._silence(execution)
-        if silence:
+            return None
+        silence = self._silence_about(execution)
+        if silence is not None:
             self._execution = None
         return silence
 
-    def _silence(self, execution: _Execution) -> str:
-        if execution.lost:
-            return (
-                f"the motion node has lost plan {execution.plan_id}; was it restarted? "
-                "Look at the scene and ask again"
-            )
-        if execution.heard is None:
-            limit, since = self._settings.motion_accept_timeout, execution.published
-            sentence = "the motion node does not take up the plan"
-            if self._plans.subscribers() == 0:
-                limit = min(limit, DISCOVERY_SECONDS)
-                sentence = "nobody subscribes to symbolic_plan"
-        else:
-            limit, since = self._settings.motion_silence_timeout, execution.heard
-            sentence = "the motion node reports nothing any more"
-        if self._clock.now() - since < limit:
-            return ""
-        return f"{sentence} (waited {limit:g} s); is motion_node running?"
+    def _silence_about(self, execution: Execution) -> MotionSilentError | None:
+        return execution.silence(
+            self._clock.now(), self._settings, self._heard, self._plans.subscribers()
+        )
 
-    @staticmethod
-    def _state(report: MotionReport | None) -> str:
-        return "not taken up yet" if report is None else report.state.name
+    def _running_foreign(self) -> Foreign | None:
+        foreign, silence = self._foreign, self._settings.motion_silence_timeout
+        if foreign is None or self._clock.now() >= foreign.heard + silence:
+            return None
+        return foreign

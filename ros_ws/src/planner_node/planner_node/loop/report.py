@@ -77,9 +77,10 @@ class Outcome:
         message: a sentence for people.
         module: the part of the system that could not go on: perception, planner, motion or "".
         moves_planned: of the first plan; ``moves_executed``: over all plans.
-        causes: why plans were given up or made anew, in order: the first cause first.
+        causes: why plans were given up, failed or were made anew, and what differed from what was
+            predicted, in order: the first cause first.
         initial, final: the first and the last scene that was seen.
-        motion: the last report of the motion node.
+        motion: the last report on a plan, with where the arm is now and what it holds.
         perceive_seconds, plan_seconds, motion_seconds, execute_seconds: wall times, summed [s];
             motion is the optimisation.
     """

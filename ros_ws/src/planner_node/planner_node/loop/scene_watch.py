@@ -31,11 +31,12 @@ class SceneWatch:
         self._clock = clock or Clock()
         self._arrived = threading.Condition()
         self._newest: Sighting | None = None
+        self._heard = 0.0
 
     def receive(self, sighting: Sighting) -> None:
         """Takes what perception reports in place of what it reported before."""
         with self._arrived:
-            self._newest = sighting
+            self._newest, self._heard = sighting, self._clock.now()
             self._arrived.notify_all()
 
     def latest(self, after: int = 0, needed: frozenset[str] = frozenset()) -> Scene:
@@ -46,17 +47,17 @@ class SceneWatch:
             needed: objects that have to be in it.
 
         Raises:
-            NoSceneGraphError: none has arrived.
+            NoSceneGraphError: none has arrived, or none any more.
             NotConfidentError: it cannot be trusted; the sentence says why.
             ObjectLostError: a needed object is not in it.
         """
         with self._arrived:
-            sighting = self._newest
+            sighting, heard = self._newest, self._heard
         if sighting is None:
             raise NoSceneGraphError(
                 "no scene graph has arrived; are the camera (sim_node) and perception_node running?"
             )
-        self._check_time(sighting.stamp, after)
+        self._check_time(sighting.stamp, after, self._clock.now() - heard)
         scene = scene_in(sighting, self._settings.min_confidence)
         if missing := sorted(needed - set(scene.names)):
             raise ObjectLostError(missing, scene.names)
@@ -87,13 +88,19 @@ class SceneWatch:
             with self._arrived:
                 self._clock.wait(self._arrived, POLL_SECONDS)
 
-    def _check_time(self, stamp: int, after: int) -> None:
+    def _check_time(self, stamp: int, after: int, silence: float) -> None:
         now = self.now()
         if now == 0:
             raise NoSceneGraphError(
                 "use_sim_time is set, but nothing arrives on clock; is sim_node running?"
             )
         age, limit = (now - stamp) / 1e9, self._settings.graph_max_age
+        # A simulation that died has stopped its clock, by which no graph grows old any more.
+        if silence > limit:
+            raise NoSceneGraphError(
+                f"nothing has arrived from perception for {silence:.0f} s; is the simulator or the "
+                "camera dead, is the clock standing still, or has perception_node stopped?"
+            )
         if age < -limit:
             raise NotConfidentError(
                 f"the newest scene graph is stamped {-age:.1f} s in the future; does use_sim_time "

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What an answer tells of the state it leaves: done, seen, held, where the arm is, and why."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tamp_runtime.motion_report import SOMETHING, ArmPlace, MotionReport, MotionState
+
+from scene_graph import format_stacks
+
+from .execution import STALE_SECONDS
+from .plan import Plan
+from .report import Outcome
+from .scene import Scene
+
+_DOING: Final = {"pick": "picking", "place": "placing"}
+
+
+def describe_step(report: MotionReport) -> str:
+    """What the arm is doing, such as "picking red_box, move 1 of 3"."""
+    doing = _DOING.get(report.phase, "")
+    what = f"{doing} {report.object_name}".strip() if doing else ""
+    if report.phase == "home":
+        what = "going home"
+    if not what or not report.moves_total:
+        return what or report.message or "moving"
+    return f"{what}, move {min(report.move + 1, report.moves_total)} of {report.moves_total}"
+
+
+def describe_arm(report: MotionReport, silence: float | None = 0.0) -> str:
+    """Where the arm is and what it holds, as a clause.
+
+    Args:
+        report: the newest of the motion node.
+        silence: for how long it has said nothing [s]; None if it never has said anything.
+    """
+    if silence is None:
+        return "nothing has been heard from the motion node, so where the arm is is not known"
+    holds = {"": "its hand is empty", SOMETHING: "it holds something"}.get(
+        report.held, f"it holds {report.held}"
+    )
+    x, y, z = report.hand
+    point = f"({x:.2f}, {y:.2f}, {z:.2f}) m"
+    if report.arm == ArmPlace.HOME:
+        return f"the arm rests at home, {holds}"
+    if report.arm == ArmPlace.RESTING:
+        return f"the arm rests away from home with its hand at {point}, {holds}"
+    if report.arm == ArmPlace.MOVING:
+        return f"the arm still moves with its hand at {point}, {holds}"
+    since = (
+        f" (nothing heard from the motion node for {silence:.0f} s)"
+        if silence > STALE_SECONDS
+        else ""
+    )
+    held = f"; when last heard of, {holds}" if report.held else ""
+    return f"where the arm is is not known, it may still move{since}{held}"
+
+
+def in_the_view(report: MotionReport) -> str:
+    """A clause for a refused picture, if the arm is not at home; otherwise an empty string."""
+    if report.arm not in (ArmPlace.RESTING, ArmPlace.MOVING):
+        return ""
+    return f"the robot's own arm is in the view: {describe_arm(report)}"
+
+
+def describe_difference(plan: Plan, end: MotionReport, seen: Scene) -> str:
+    """What the camera saw after a plan, if that is not what the plan predicted; else empty.
+
+    A motion that ended early may have finished the move under way, or not.
+    """
+    done = min(end.moves_done, len(plan.moves))
+    complete = end.state == MotionState.SUCCEEDED
+    expected = [plan.states[-1]] if complete else list(plan.states[done : done + 2])
+    if seen.stacks in expected:
+        return ""
+    told = (
+        "the motion node reports every move carried out"
+        if complete
+        else f"the motion node reports {done} of {len(plan.moves)} moves carried out"
+    )
+    return (
+        f"{told}, but the camera sees {format_stacks(seen.stacks)} where "
+        f"{format_stacks(expected[0])} was predicted"
+    )
+
+
+def account_for(message: str, outcome: Outcome, newest: MotionReport, silence: float | None) -> str:
+    """The message of an answer that is no success, with what its reader has to know beside it.
+
+    What the message says already is not repeated.
+    """
+    clauses = []
+    causes = list(dict.fromkeys(outcome.causes))
+    for kind, cause in zip(("first cause", "last cause"), (causes[:1], causes[1:][-1:])):
+        clauses += [f"{kind}: {text}" for text in cause if text not in message]
+    if outcome.final is not None:
+        seen = format_stacks(outcome.final.stacks)
+        if seen not in message:
+            clauses.append(f"seen last: {seen}")
+    if outcome.moves_planned:
+        moves = outcome.moves_executed
+        clauses.append(f"{moves} {'move was' if moves == 1 else 'moves were'} carried out")
+    arm = describe_arm(newest, silence)
+    if arm not in message:
+        clauses.append(arm)
+    if not clauses:
+        return message
+    told = "; ".join(clauses)
+    return f"{message.rstrip('.')}. {told[0].upper()}{told[1:]}"
