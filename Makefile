@@ -6,13 +6,13 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-visual eval-tasks eval-faults results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-visual eval-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
 
-setup:  ## virtual environment and workspace, built where something changed
-	@tools/setup "$(PYTHON)"
+setup:  ## virtual environment and workspace, built where something changed; TORCH_BACKEND=cpu
+	@TORCH_BACKEND="$(TORCH_BACKEND)" tools/setup "$(PYTHON)"
 
 demo: setup  ## build a tower; SEED= BLOCKS= GOAL= OUT= RTF=
 	@$(RUN) ros2 run tamp_bringup demo $(if $(SEED),--seed $(SEED)) $(if $(BLOCKS),--blocks $(BLOCKS)) \
@@ -42,11 +42,6 @@ eval-visual: setup  ## scene graph accuracy on unseen states; QUICK=1
 eval-tasks: setup  ## success from pixels to tower; N= BLOCKS= RTF= RESUME=1 QUICK=1 BASELINE=
 	@$(RUN) python benchmarks/eval_tasks.py $(if $(N),--n $(N)) $(if $(BLOCKS),--blocks $(BLOCKS)) \
 	  $(if $(RTF),--real-time-factor $(RTF)) $(if $(RESUME),--resume) $(if $(BASELINE),--baseline "$(BASELINE)")
-
-eval-faults: setup  ## faults of every kind in every phase, and what becomes of the task; ONLY= PHASE= SEED= TRIALS= RTF= RESUME=1 QUICK=1
-	@$(RUN) python benchmarks/eval_faults.py $(if $(ONLY),--only "$(ONLY)") $(if $(PHASE),--phase $(PHASE)) \
-	  $(if $(SEED),--seed $(SEED)) $(if $(TRIALS),--trials $(TRIALS)) $(if $(RTF),--real-time-factor $(RTF)) \
-	  $(if $(RESUME),--resume) $(ARGS)
 
 results: setup  ## docs/results.md from the result files
 	@$(RUN) python benchmarks/write_results_page.py
