@@ -20,6 +20,7 @@ setup(
             "planner_node = planner_node.executable:planner_node",
             "plan_to_goal = planner_node.executable:plan_to_goal",
             "achieve_goal = planner_node.executable:achieve_goal",
+            "stop = planner_node.executable:stop",
         ]
     },
 )

@@ -19,6 +19,7 @@ from tamp_interfaces.msg import MotionStatus, Move, SymbolicPlan
 from tamp_interfaces.srv import PlanToGoal
 
 from planner_node.cli import commands
+from planner_node.cli.arm_text import describe_arm
 from planner_node.cli.goal_image import ImageFileError, read_goal_image
 from planner_node.cli.plan_text import describe_plan, describe_scene
 from planner_node.cli.progress import ProgressPrinter
@@ -40,6 +41,7 @@ class FakePlanner:
     Attributes:
         seconds: how long each look at the goal takes.
         interrupt: Ctrl-C comes while the goal is worked on.
+        interrupt_at: what is called when another one comes: start, cancel or wait.
     """
 
     def __init__(self) -> None:
@@ -47,7 +49,9 @@ class FakePlanner:
         self.final = Result()
         self.ends_by_itself = True
         self.interrupt = False
+        self.interrupt_at: set[str] = set()
         self.cancels = 0
+        self.withdrawals = 0
         self.asked: dict[str, Any] = {}
         self.now = 0.0
 
@@ -63,9 +67,16 @@ class FakePlanner:
 
     def start(self, goal: str, **arguments: Any) -> None:
         self.asked = {"goal": goal, **arguments}
+        self.interrupted("start")
+
+    def interrupted(self, call: str) -> None:
+        if call in self.interrupt_at:
+            raise KeyboardInterrupt
 
     def next_feedback(self, timeout: float) -> None:
         self.now += timeout
+        if self.cancels:
+            self.interrupted("wait")
         if self.interrupt:
             self.interrupt = False
             raise KeyboardInterrupt
@@ -74,7 +85,13 @@ class FakePlanner:
         return self.ends_by_itself or self.cancels > 0
 
     def cancel(self) -> None:
+        self.interrupted("cancel")
         self.cancels += 1
+
+    def withdraw(self, timeout: float = 1.0) -> bool:
+        del timeout
+        self.withdrawals += 1
+        return True
 
     def result(self, timeout: float) -> AchieveGoal.Result:
         del timeout
@@ -85,7 +102,7 @@ class FakePlanner:
 def planner(monkeypatch: pytest.MonkeyPatch) -> FakePlanner:
     fake = FakePlanner()
     monkeypatch.setattr(commands, "PlannerClient", lambda: fake)
-    monkeypatch.setattr(commands, "_init", lambda _arguments: None)
+    monkeypatch.setattr(commands, "prepare", lambda _arguments: None)
     monkeypatch.setattr(commands.time, "monotonic", lambda: fake.now)
     return fake
 
@@ -154,6 +171,62 @@ def test_a_goal_that_is_given_up_is_cancelled(
     assert "all is down" in error
 
 
+def test_fault_1_a_client_that_is_interrupted_while_it_asks_withdraws_the_goal(
+    planner: FakePlanner, capsys: pytest.CaptureFixture[str]
+) -> None:
+    planner.interrupt_at = {"start"}
+    assert commands.achieve_goal(["achieve_goal", "red on blue"]) == 130
+    assert (planner.cancels, planner.withdrawals) == (0, 1)
+    assert "the goal is cancelled" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("when", "withdrawals"), [("cancel", 1), ("wait", 0)])
+def test_fault_1_the_second_ctrl_c_leaves_at_once_and_the_goal_is_cancelled_all_the_same(
+    planner: FakePlanner, capsys: pytest.CaptureFixture[str], when: str, withdrawals: int
+) -> None:
+    planner.ends_by_itself, planner.interrupt, planner.interrupt_at = False, True, {when}
+    assert commands.achieve_goal(["achieve_goal", "red on blue"]) == 130
+    assert planner.withdrawals == withdrawals
+    assert planner.cancels + planner.withdrawals == 1
+    error = capsys.readouterr().err
+    assert "the arm puts down what it holds" in error
+    assert "ros2 run planner_node stop" in error
+
+
+def test_fault_4_a_failure_is_told_with_its_first_cause_and_what_the_arm_holds(
+    planner: FakePlanner, capsys: pytest.CaptureFixture[str]
+) -> None:
+    motion = MotionStatus(arm=MotionStatus.ARM_RESTING, held="red_box")
+    motion.hand.x = 0.512
+    planner.final = Result(
+        status=Result.TOO_MANY_REPLANS,
+        message="given up",
+        module="motion",
+        causes=["the fingers closed on nothing", "the arm fell behind"],
+        motion=motion,
+    )
+    assert commands.achieve_goal(["achieve_goal", "red on blue"]) == 1
+    assert capsys.readouterr().err.splitlines() == [
+        "achieve_goal [motion]: given up",
+        "  the first cause: the fingers closed on nothing",
+        "  the arm rests away from home, its hand at (0.51, 0.00, 0.00) m, and holds red_box",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("arm", "held", "sentence"),
+    [
+        (MotionStatus.ARM_HOME, "", "the arm is at home with an empty hand"),
+        (MotionStatus.ARM_MOVING, "?", "the arm still moves and holds something"),
+        (MotionStatus.ARM_UNKNOWN, "", "it may still move"),
+    ],
+)
+def test_the_arm_is_described_as_the_motion_node_reports_it(
+    arm: int, held: str, sentence: str
+) -> None:
+    assert sentence in describe_arm(MotionStatus(arm=arm, held=held))
+
+
 def save(path: Path, pixels: Any) -> Path:
     Image.fromarray(pixels).save(path)
     return path
@@ -212,7 +285,7 @@ class Terminal(io.StringIO):
         return True
 
 
-def moving(progress: float, phase: str = "pick") -> AchieveGoal.Feedback:
+def moving(progress: float, phase: str = "pick", plan: bool = True) -> AchieveGoal.Feedback:
     motion = MotionStatus(
         state=MotionStatus.EXECUTING,
         moves_total=1,
@@ -220,6 +293,9 @@ def moving(progress: float, phase: str = "pick") -> AchieveGoal.Feedback:
         object_name="red_box",
         progress=progress,
     )
+    if not plan:  # all feedback but the first on a plan
+        later = SymbolicPlan(plan_id=PLAN.plan_id)
+        return Feedback(stage=Feedback.EXECUTING, motion=motion, plan=later)
     return Feedback(stage=Feedback.EXECUTING, motion=motion, plan=PLAN, states=STATES)
 
 
@@ -230,7 +306,7 @@ def test_progress_prints_what_is_new() -> None:
         printer.show(Feedback(stage=Feedback.PERCEIVING, message="reading the goal"))
     for progress in (0.1, 0.2):
         printer.show(moving(progress))
-    printer.show(moving(0.3, "place"))
+    printer.show(moving(0.3, "place", plan=False))
     printer.finish()
     assert stream.getvalue().splitlines() == [
         "perceive  reading the goal",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executables ``planner_node``, ``plan_to_goal``, ``achieve_goal``."""
+"""The executables ``planner_node``, ``plan_to_goal``, ``achieve_goal``, ``stop``."""
 
 from __future__ import annotations
 
@@ -19,3 +19,8 @@ def plan_to_goal() -> int:
 def achieve_goal() -> int:
     """Entry point of ``ros2 run planner_node achieve_goal``."""
     return run_module("planner_node.cli.commands", "achieve_goal", stopped=130)
+
+
+def stop() -> int:
+    """Entry point of ``ros2 run planner_node stop``."""
+    return run_module("planner_node.cli.stop", "stop", stopped=130)

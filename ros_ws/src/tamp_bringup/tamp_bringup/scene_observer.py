@@ -16,6 +16,7 @@ from tamp_interfaces.srv import ResetScene
 from tamp_runtime.messages.images import array_from_image
 from tamp_runtime.messages.scene_graph import graph_from_message
 from tamp_runtime.messages.stamps import seconds
+from tamp_runtime.neighbour import Neighbour
 from tamp_runtime.node_thread import NodeThread
 from tamp_runtime.qos import LATCHED, NEWEST
 from tamp_runtime.service_call import ask
@@ -55,6 +56,7 @@ class SceneObserver:
         node.create_subscription(SceneGraphMsg, "sim/ground_truth", self._on_truth, LATCHED)
         node.create_subscription(SceneGraphMsg, "scene_graph", self._on_graph, NEWEST)
         node.create_subscription(Image, "camera/image_raw", self._on_image, NEWEST)
+        self._simulator = Neighbour(node, "sim_node")
         self._reset = node.create_client(ResetScene, "sim/reset")
         self._thread = NodeThread(node)
 
@@ -83,6 +85,8 @@ class SceneObserver:
                 client.service_is_ready,
                 client.wait_for_service,
                 timeout,
+                self._simulator,
+                lambda: self._node.count_services(client.service_name),
             )
         except TimeoutError:
             raise SimulationError(

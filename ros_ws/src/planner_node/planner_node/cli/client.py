@@ -18,21 +18,32 @@ import uuid
 from collections.abc import Callable
 from typing import Any, Final
 
-from action_msgs.msg import GoalStatus
+from action_msgs.msg import GoalInfo, GoalStatus
+from action_msgs.srv import CancelGoal
 from rclpy.action import ActionClient
-from rclpy.action.client import ClientGoalHandle
 from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.task import Future
 from sensor_msgs.msg import Image
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.srv import PlanToGoal
+from tamp_runtime.neighbour import Neighbour
 from tamp_runtime.node_thread import NodeThread
 from tamp_runtime.service_call import arrival, ask
 from unique_identifier_msgs.msg import UUID
 
-#: The planner counts as gone when it has not been seen for this long [s].
+#: The planner counts as gone when DDS has not seen it for this long [s].
 GONE_SECONDS: Final = 2.0
+#: How often a goal is cancelled of which the planner may not have heard yet.
+CANCEL_ATTEMPTS: Final = 5
+
+#: What a person can do when nobody is there any more who follows the plan.
+WHAT_TO_DO: Final = (
+    "What became of its plan is not known, and the arm may go on with it: stop it with "
+    "'ros2 run planner_node stop', or look at the scene and ask again"
+)
+
+_TERMINATED: Final = CancelGoal.Response.ERROR_GOAL_TERMINATED
 
 
 class PlannerUnavailableError(RuntimeError):
@@ -44,19 +55,26 @@ class PlannerClient:
 
     It has its own node and thread, so it works beside whatever else the caller spins. ``rclpy``, or
     the given context, must be initialised before and shut down after.
+
+    A planner that is killed is noticed by its signs of life within ten seconds, also where another
+    one has taken its place; one that stands still for five is waited for.
     """
 
     def __init__(self, context: Context | None = None, **node_arguments: Any) -> None:
         """``node_arguments`` go to the node, for example ``namespace``."""
         name = f"planner_client_{uuid.uuid4().hex[:6]}"
-        self._node = Node(name, context=context, **node_arguments)
-        self._plan_client = self._node.create_client(PlanToGoal, "plan_to_goal")
-        self._goal_client = ActionClient(self._node, AchieveGoal, "achieve_goal")
+        self._node = node = Node(name, context=context, **node_arguments)
+        self._planner = Neighbour(node, "planner_node")
+        self._plan_client = node.create_client(PlanToGoal, "plan_to_goal")
+        self._goal_client = ActionClient(node, AchieveGoal, "achieve_goal")
+        # rclpy's own way to cancel needs a goal that was accepted, and can cancel no one else's.
+        self._cancel_client = node.create_client(CancelGoal, "achieve_goal/_action/cancel_goal")
         self._feedback: queue.SimpleQueue[AchieveGoal.Feedback] = queue.SimpleQueue()
-        self._handle: ClientGoalHandle | None = None
+        self._goal_id: UUID | None = None
+        self._followed_by: frozenset[str] = frozenset()
         self._result: Future | None = None
         self._gone_since: float | None = None
-        self._thread = NodeThread(self._node)
+        self._thread = NodeThread(node)
 
     def plan(
         self,
@@ -78,13 +96,7 @@ class PlannerClient:
             goal_segmentation=goal_segmentation or Image(),
             execute=execute,
         )
-        client = self._plan_client
-        return _ask(
-            lambda: client.call_async(request),
-            client.service_is_ready,
-            client.wait_for_service,
-            timeout,
-        )
+        return self._call(self._plan_client, request, timeout)
 
     def start(
         self,
@@ -101,26 +113,35 @@ class PlannerClient:
         """
         feedback: queue.SimpleQueue[AchieveGoal.Feedback] = queue.SimpleQueue()
         self._feedback = feedback
-        self._result, self._gone_since = None, None
+        self._goal_id, self._result, self._gone_since = None, None, None
         request = AchieveGoal.Goal(
             goal=goal,
             goal_image=goal_image or Image(),
             goal_segmentation=goal_segmentation or Image(),
         )
         client, identity = self._goal_client, UUID(uuid=list(uuid.uuid4().bytes))
-        handle = _ask(
-            lambda: self._thread.call(
-                lambda: client.send_goal_async(
-                    request, lambda message: feedback.put(message.feedback), identity
-                )
-            ),
-            client.server_is_ready,
-            client.wait_for_server,
-            timeout,
-        )
+
+        def send() -> Future:
+            self._goal_id = identity
+            return client.send_goal_async(
+                request, lambda message: feedback.put(message.feedback), identity
+            )
+
+        try:
+            handle = self._ask(
+                lambda: self._thread.call(send),
+                client.server_is_ready,
+                client.wait_for_server,
+                timeout,
+                self._node.resolve_service_name("achieve_goal/_action/send_goal"),
+            )
+        except PlannerUnavailableError:
+            if self._goal_id:  # one that wakes up later shall not begin with what nobody awaits
+                self._cancel_client.call_async(self._cancel_request())
+            raise
         if not handle.accepted:
             raise PlannerUnavailableError("planner_node refused the goal; its log says why")
-        self._handle = handle
+        self._followed_by = self._planner.living()
         self._result = self._thread.call(handle.get_result_async)
 
     def is_done(self) -> bool:
@@ -131,14 +152,8 @@ class PlannerClient:
         """
         if self._started().done():
             return True
-        if self._gone_since is None and not self._goal_client.server_is_ready():
-            self._gone_since = time.monotonic()
-        # A planner that comes back knows nothing of the goal, so its return changes nothing.
-        if self._gone_since and time.monotonic() > self._gone_since + GONE_SECONDS:
-            raise PlannerUnavailableError(
-                "planner_node went away while it worked on the goal; what became of the plan is "
-                "not known. Start it again and ask again"
-            )
+        if loss := self._loss():
+            raise PlannerUnavailableError(f"{loss} while it worked on the goal. {WHAT_TO_DO}")
         return False
 
     def next_feedback(self, timeout: float) -> AchieveGoal.Feedback | None:
@@ -148,16 +163,46 @@ class PlannerClient:
         except queue.Empty:
             return None
 
-    def cancel(self, timeout: float = 5.0) -> None:
+    def cancel(self, timeout: float = 8.0) -> None:
         """Asks for cancellation; the result, of status CANCELLED, comes when the arm rests.
+
+        Raises:
+            PlannerUnavailableError: no answer within ``timeout`` [s], or from one that does not
+                know the goal.
+        """
+        result = self._started()
+        code = self._cancel(timeout)
+        if result.done() or code in (CancelGoal.Response.ERROR_NONE, _TERMINATED):
+            return
+        if code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
+            raise PlannerUnavailableError(
+                f"planner_node does not know the goal; it was started anew. {WHAT_TO_DO}"
+            )
+        raise PlannerUnavailableError("planner_node refused to cancel the goal; its log says why")
+
+    def withdraw(self, timeout: float = 2.0) -> bool:
+        """Cancels what :meth:`start` asked for and was interrupted; whether the planner knew it.
 
         Raises:
             PlannerUnavailableError: no answer within ``timeout`` [s].
         """
-        self._started()
-        assert self._handle is not None
-        if not arrival(self._thread.call(self._handle.cancel_goal_async)).wait(timeout):
-            raise _unavailable(timeout)
+        if self._goal_id is None:
+            return False
+        for _ in range(CANCEL_ATTEMPTS):  # the goal may still be on its way
+            if self._cancel(timeout) != CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
+                return True
+            time.sleep(0.1)
+        return False
+
+    def cancel_all(self, timeout: float = 5.0) -> int:
+        """Cancels every goal of achieve_goal, whoever asked for it; returns how many there were.
+
+        Raises:
+            PlannerUnavailableError: no answer within ``timeout`` [s].
+        """
+        # No name and no time: all of them.
+        answer = self._call(self._cancel_client, CancelGoal.Request(), timeout)
+        return len(answer.goals_canceling)
 
     def result(self, timeout: float) -> AchieveGoal.Result:
         """Waits for the result, whatever its status.
@@ -176,7 +221,7 @@ class PlannerClient:
         response = future.result()
         if response.status == GoalStatus.STATUS_UNKNOWN:
             raise PlannerUnavailableError(
-                "planner_node does not know the goal; was it restarted? Ask again"
+                f"planner_node does not know the goal; it was started anew. {WHAT_TO_DO}"
             )
         return response.result
 
@@ -197,17 +242,56 @@ class PlannerClient:
             raise RuntimeError("no goal was started; call start() first")
         return self._result
 
+    def _loss(self) -> str:
+        """How the planner that has the goal was lost, or an empty string."""
+        if not self._followed_by:  # accepted before its first sign of life was heard
+            self._followed_by = self._planner.living()
+        if self._followed_by and self._planner.are_gone(self._followed_by):
+            anew = bool(self._planner.living() - self._followed_by)
+            return (
+                "planner_node went away, and another one was started,"
+                if anew
+                else "planner_node went away: it has given no sign of life for 8 s"
+            )
+        if self._gone_since is None and not self._goal_client.server_is_ready():
+            self._gone_since = time.monotonic()
+        # A planner that comes back knows nothing of the goal, so its return changes nothing.
+        gone = self._gone_since and time.monotonic() > self._gone_since + GONE_SECONDS
+        return "planner_node went away" if gone else ""
 
-def _ask(
-    send: Callable[[], Future],
-    is_ready: Callable[[], bool],
-    wait_for: Callable[..., bool],
-    timeout: float,
-) -> Any:
-    try:
-        return ask(send, is_ready, wait_for, timeout)
-    except TimeoutError:
-        raise _unavailable(timeout) from None
+    def _cancel(self, timeout: float) -> int:
+        """The return code of the request to cancel the own goal."""
+        answer = self._call(self._cancel_client, self._cancel_request(), timeout)
+        code: int = answer.return_code
+        return code
+
+    def _cancel_request(self) -> CancelGoal.Request:
+        return CancelGoal.Request(goal_info=GoalInfo(goal_id=self._goal_id))
+
+    def _call(self, client: Any, request: Any, timeout: float) -> Any:
+        return self._ask(
+            lambda: client.call_async(request),
+            client.service_is_ready,
+            client.wait_for_service,
+            timeout,
+            client.service_name,
+        )
+
+    def _ask(
+        self,
+        send: Callable[[], Future],
+        is_ready: Callable[[], bool],
+        wait_for: Callable[..., bool],
+        timeout: float,
+        service: str,
+    ) -> Any:
+        def servers() -> int:
+            return self._node.count_services(service)
+
+        try:
+            return ask(send, is_ready, wait_for, timeout, self._planner, servers)
+        except TimeoutError:
+            raise _unavailable(timeout) from None
 
 
 def _unavailable(timeout: float) -> PlannerUnavailableError:

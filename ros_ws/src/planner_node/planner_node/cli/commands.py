@@ -18,18 +18,20 @@ from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.srv import PlanToGoal
 from tamp_runtime.node_process import prepare_process
 
+from .arm_text import describe_failure
 from .client import PlannerClient, PlannerUnavailableError
 from .goal_image import ImageFileError, read_goal_image
+from .interrupts import exit_code, listen_to_signals, mute, say, terminal_may_close
 from .plan_text import describe_plan
 from .progress import ProgressPrinter
 
 SUCCEEDED: Final = (PlanToGoal.Response.SUCCESS, PlanToGoal.Response.ALREADY_TRUE)
 EXIT_FAILED: Final = 1
-EXIT_CANCELLED: Final = 130
 #: How long the planner may take to answer [s].
 ANSWER_TIMEOUT: Final = 10.0
 #: How long a cancelled motion may take until it rests [s].
 CANCEL_TIMEOUT: Final = 60.0
+STOP_HINT: Final = "'ros2 run planner_node stop' stops the arm and says how it ended"
 
 
 def plan_to_goal(arguments: Sequence[str] | None = None) -> int:
@@ -39,7 +41,7 @@ def plan_to_goal(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--execute", action="store_true", help="also have the plan carried out")
     options = parser.parse_args(remove_ros_args(arguments)[1:])
     image, segmentation = _read_images(parser, options)
-    _init(arguments)
+    prepare(arguments)
     try:
         with PlannerClient() as planner:
             answer = planner.plan(
@@ -50,50 +52,63 @@ def plan_to_goal(arguments: Sequence[str] | None = None) -> int:
                 timeout=options.timeout,
             )
     except PlannerUnavailableError as error:
-        print(f"plan_to_goal: {error}", file=sys.stderr)
+        say(f"plan_to_goal: {error}")
         return EXIT_FAILED
-    except KeyboardInterrupt:
-        return EXIT_CANCELLED
+    except KeyboardInterrupt as interrupt:
+        if options.execute:
+            say(f"plan_to_goal: interrupted, the plan may be carried out; {STOP_HINT}")
+        return exit_code(interrupt)
     finally:
         rclpy.try_shutdown()
     if answer.status not in SUCCEEDED:
-        print(f"plan_to_goal: {answer.message}", file=sys.stderr)
+        say(f"plan_to_goal: {answer.message}")
         return EXIT_FAILED
-    print(answer.message)
-    for line in describe_plan(answer.plan, answer.states):
-        print(line)
-    print(f"{answer.expanded} states expanded in {answer.planning_seconds:.3f} s")
+    effort = f"{answer.expanded} states expanded in {answer.planning_seconds:.3f} s"
+    for line in (answer.message, *describe_plan(answer.plan, answer.states), effort):
+        say(line, sys.stdout)
     return 0
 
 
 def achieve_goal(arguments: Sequence[str] | None = None) -> int:
-    """Has a goal achieved and shows how; Ctrl-C cancels it and waits until the arm rests."""
+    """Has a goal achieved and shows how.
+
+    Ctrl-C, SIGTERM and a closed terminal cancel it and wait until the arm rests; the second of them
+    leaves at once.
+    """
     arguments = sys.argv if arguments is None else arguments
     parser = _parser("achieve_goal", "Achieves a goal, until the camera confirms it.", 600.0)
     options = parser.parse_args(remove_ros_args(arguments)[1:])
     image, segmentation = _read_images(parser, options)
-    _init(arguments)
+    prepare(arguments)
     try:
         with PlannerClient() as planner:
-            planner.start(
-                options.goal or "",
-                goal_image=image,
-                goal_segmentation=segmentation,
-                timeout=min(ANSWER_TIMEOUT, options.timeout),
-            )
+            try:
+                planner.start(
+                    options.goal or "",
+                    goal_image=image,
+                    goal_segmentation=segmentation,
+                    timeout=min(ANSWER_TIMEOUT, options.timeout),
+                )
+            except KeyboardInterrupt as interrupt:
+                return _withdraw(planner, exit_code(interrupt))
             try:
                 if _follow(planner, options.timeout):
                     return _report(planner.result(timeout=1.0))
-                print(f"achieve_goal: not done after {options.timeout:g} s", file=sys.stderr)
-            except KeyboardInterrupt:
-                return _cancel(planner, EXIT_CANCELLED)
-            return _cancel(planner, EXIT_FAILED)
+                say(f"achieve_goal: not done after {options.timeout:g} s")
+                code = EXIT_FAILED
+            except KeyboardInterrupt as interrupt:
+                code = exit_code(interrupt)
+            except OSError:  # nobody reads any more what is printed
+                mute(sys.stdout)
+                code = EXIT_FAILED
+            with terminal_may_close():
+                return _cancel(planner, code)
     except PlannerUnavailableError as error:
-        print(f"achieve_goal: {error}", file=sys.stderr)
+        say(f"achieve_goal: {error}")
         return EXIT_FAILED
-    except KeyboardInterrupt:
-        print("achieve_goal: interrupted, not waiting for an answer", file=sys.stderr)
-        return EXIT_CANCELLED
+    except KeyboardInterrupt as interrupt:
+        say("achieve_goal: left at once")
+        return exit_code(interrupt)
     finally:
         rclpy.try_shutdown()
 
@@ -130,9 +145,11 @@ def _read_images(
         parser.error(str(error))
 
 
-def _init(arguments: Sequence[str]) -> None:
+def prepare(arguments: Sequence[str]) -> None:
+    """What every client does before it makes a node."""
     prepare_process()
-    # Ctrl-C must reach this program as KeyboardInterrupt: it still has a goal to cancel.
+    # Signals must reach this program as KeyboardInterrupt: it still has a goal to cancel.
+    listen_to_signals()
     rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
 
 
@@ -152,26 +169,63 @@ def _follow(planner: PlannerClient, timeout: float) -> bool:
         printer.finish()
 
 
-def _cancel(planner: PlannerClient, exit_code: int) -> int:
-    print("achieve_goal: cancelling, waiting until the arm rests", file=sys.stderr)
-    planner.cancel()
-    if not _follow(planner, CANCEL_TIMEOUT):
-        print(f"achieve_goal: no end after {CANCEL_TIMEOUT:g} s", file=sys.stderr)
+def _withdraw(planner: PlannerClient, code: int) -> int:
+    """Ends a client that was interrupted before the planner answered."""
+    try:
+        known = planner.withdraw()
+    except PlannerUnavailableError:
+        say(f"achieve_goal: interrupted, and planner_node does not answer; {STOP_HINT}")
+    else:
+        what = "the goal is cancelled" if known else "nothing was asked for yet"
+        say(f"achieve_goal: interrupted, {what}")
+    return code
+
+
+def _cancel(planner: PlannerClient, code: int) -> int:
+    say("achieve_goal: cancelling, waiting until the arm rests; Ctrl-C leaves at once")
+    told = False
+    try:
+        planner.cancel()
+        told = True
+        ended = _follow_to_the_end(planner)
+    except KeyboardInterrupt as interrupt:
+        if not told and not planner.withdraw(timeout=1.0):
+            raise
+        say(
+            "achieve_goal: left at once; the goal is cancelled, so the arm puts down what it holds "
+            f"and goes home. {STOP_HINT}"
+        )
+        return exit_code(interrupt)
+    if not ended:
+        say(f"achieve_goal: no end after {CANCEL_TIMEOUT:g} s; {STOP_HINT}")
         return EXIT_FAILED
     result = planner.result(timeout=1.0)
-    print(f"achieve_goal: {result.message}", file=sys.stderr)
-    return exit_code
+    for line in (result.message, *describe_failure(result)):
+        say(f"achieve_goal: {line}")
+    return code
+
+
+def _follow_to_the_end(planner: PlannerClient) -> bool:
+    """As :func:`_follow`, until a cancelled motion rests, also where nobody reads what is told."""
+    try:
+        return _follow(planner, CANCEL_TIMEOUT)
+    except OSError:
+        mute(sys.stdout)
+        return _follow(planner, CANCEL_TIMEOUT)
 
 
 def _report(result: AchieveGoal.Result) -> int:
     where = f" [{result.module}]" if result.module else ""
     if result.status not in SUCCEEDED:
-        print(f"achieve_goal{where}: {result.message}", file=sys.stderr)
+        say(f"achieve_goal{where}: {result.message}")
+        for line in describe_failure(result):
+            say(f"  {line}")
         return EXIT_FAILED
-    print(result.message)
-    print(
+    say(result.message, sys.stdout)
+    say(
         f"{result.moves_executed} moves, {result.replans} replans; "
         f"perceive {result.perceive_seconds:.2f} s, plan {result.plan_seconds:.3f} s, "
-        f"motion {result.motion_seconds:.2f} s, execute {result.execute_seconds:.2f} s"
+        f"motion {result.motion_seconds:.2f} s, execute {result.execute_seconds:.2f} s",
+        sys.stdout,
     )
     return 0

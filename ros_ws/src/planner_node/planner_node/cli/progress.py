@@ -41,7 +41,8 @@ class ProgressPrinter:
             self._shown = (feedback.stage, step)
             text = _describe_step(motion) if moving else feedback.message
             self._line(f"{STAGES.get(feedback.stage, '?'):9} {text}")
-        if feedback.plan.plan_id != self._plan_id:
+        # Moves and scenes come once a plan, later only its name.
+        if feedback.plan.moves and feedback.plan.plan_id != self._plan_id:
             self._plan_id = feedback.plan.plan_id
             for line in describe_plan(feedback.plan, feedback.states):
                 self._line(f"{'':9} {line}")
