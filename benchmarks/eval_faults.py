@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import signal
 import sys
 import time
 import traceback
@@ -130,7 +131,7 @@ def _try(setting: Setting, task: Task) -> TrialResult:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--only", default="", help="the name of a fault, or a part of some")
+    parser.add_argument("--only", default="", help="names of faults, or parts of them: a,b,c")
     parser.add_argument("--phase", type=Phase, choices=list(Phase), help="only this phase")
     parser.add_argument("--seed", type=int, help="one trial a kind with this seed")
     parser.add_argument("--trials", type=int, default=5, help="of each kind")
@@ -157,6 +158,8 @@ def main() -> int:
     if not options.report:
         use_own_domain()
         prepare_process()
+        # Where a script put this into the background, SIGINT is ignored.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         try:
             run_tasks(tasks, options.real_time_factor)

@@ -123,7 +123,39 @@ def section(result: Mapping[str, Any], plots: Sequence[str]) -> list[str]:
     ]
     for plot in plots:
         lines += ["", f"![{result['name']}]({plot})"]
+    if entries := result.get("details", {}).get("dictionary"):
+        lines += ["", *dictionary_table(entries)]
     return lines
+
+
+def dictionary_table(entries: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Fault × phase × outcome × sentence, folded; what a person sees when something goes wrong."""
+    kinds = len({entry["fault"] for entry in entries})
+    lines = [
+        f"<details><summary>What becomes of a task: {kinds} kinds of faults by phase, and the "
+        "sentence that the one who asks gets</summary>",
+        "",
+        "| fault | phase | outcome | n | status | sentence |",
+        "|---|---|---|---:|---|---|",
+    ]
+    before = ""
+    for entry in entries:
+        fault = f"**{entry['fault']}**: {entry['what']}" if entry["fault"] != before else ""
+        before = entry["fault"]
+        first = "; ".join(entry["causes"])
+        sentence = f"{entry['sentence']} (first cause: {first})" if first else entry["sentence"]
+        again = f" `{entry['again']}`" if entry["again"] else ""
+        bad = f"**{', '.join(entry['bad'])}** " if entry["bad"] else ""
+        cells = (
+            fault,
+            entry["phase"],
+            bad + entry["ending"],
+            str(entry["n"]),
+            entry["status"],
+            _shortened(sentence) + again,
+        )
+        lines.append("| " + " | ".join(_cell(cell) for cell in cells) + " |")
+    return [*lines, "", "</details>"]
 
 
 def write_page(results_folder: Path, page: Path) -> None:
@@ -145,6 +177,10 @@ def write_page(results_folder: Path, page: Path) -> None:
     for plot in set(plot_folder.glob("*.svg")) - written:  # of results that are no more
         plot.unlink()
     page.write_text("\n".join(lines) + "\n")
+
+
+def _shortened(sentence: str, length: int = 240) -> str:
+    return sentence if len(sentence) <= length else f"{sentence[: length - 1]}…"
 
 
 def _number(value: float) -> str:

@@ -20,7 +20,7 @@ from tamp_interfaces.srv import ResetScene
 from tamp_runtime.messages.scene_graph import graph_from_message
 from tamp_runtime.messages.stamps import nanoseconds
 from tamp_runtime.node_thread import NodeThread
-from tamp_runtime.qos import LATCHED, RELIABLE, SENSOR_DATA
+from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
 from tamp_runtime.service_call import ask
 
 from faults.fault import Phase
@@ -47,11 +47,13 @@ class Eyes:
         self._count = 0
         self._statuses: list[MotionStatus] = []
         self._joints: bytes | None = None
+        self._graphs = 0
         self._home: NDArray[np.float64] | None = None
         node = self._node
         node.create_subscription(SceneGraphMsg, "sim/ground_truth", self._on_truth, LATCHED)
         node.create_subscription(MotionStatus, "motion_status", self._on_status, RELIABLE)
         node.create_subscription(JointState, "joint_states", self._on_joints, SENSOR_DATA, raw=True)
+        node.create_subscription(SceneGraphMsg, "scene_graph", self._on_graph, NEWEST, raw=True)
         self._reset = node.create_client(ResetScene, "sim/reset")
         self._thread = NodeThread(node)
 
@@ -165,6 +167,11 @@ class Eyes:
             time.sleep(0.05)
         return True
 
+    def wait_for_graph(self, timeout: float) -> bool:
+        """Whether perception says anything from now on in time."""
+        wanted = self._graphs + 1
+        return self.wait_for(lambda: self._graphs >= wanted, timeout)
+
     def nodes(self, name: str) -> int:
         """How many nodes of a name there are."""
         return self._node.get_node_names().count(name)
@@ -179,6 +186,9 @@ class Eyes:
         with self._news:
             self._statuses.append(message)
             self._news.notify_all()
+
+    def _on_graph(self, _message: bytes) -> None:
+        self._graphs += 1
 
     def _on_joints(self, message: bytes) -> None:
         self._joints = message

@@ -10,14 +10,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from scene_graph import Stacks
-from tamp_bringup.scene_observer import SimulationError
-
 from faults.askers import CommandAsker, ProgramAsker
 from faults.fault import Injection
 from faults.relay import Mode
 from faults.setting import Setting
 from planner_node.cli.client import PlannerClient
+from scene_graph import Stacks
+from tamp_bringup.scene_observer import SimulationError
 
 #: How long a goal may be refused as BUSY by what somebody else left behind [s].
 PATIENCE: Final = 60.0

@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
+from faults.askers import Answer
+from faults.fault import Ending, Fault, names_the_cause
 from planner_node.goals import parse_goal, resolve_goal
 from scene_graph import SceneGraph
 from tamp_bringup.scene_observer import true_stacks
-
-from faults.askers import Answer
-from faults.fault import Ending, Fault, names_the_cause
 
 
 def ending_of(

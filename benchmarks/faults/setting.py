@@ -10,15 +10,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-from planner_node.cli.client import PlannerClient
-from scene_graph import Stacks
-from tamp_bringup.processes import NODES, NodeProcesses
-
 from faults.askers import Asker
 from faults.eyes import Eyes
 from faults.fault import Phase
 from faults.relay import Relays
 from faults.topics import remappings, topics_of
+from planner_node.cli.client import PlannerClient
+from scene_graph import Stacks
+from tamp_bringup.processes import NODES, NodeProcesses
 
 #: How long a node may take until it is there [s].
 START_SECONDS: Final = 60.0

@@ -15,13 +15,15 @@ from faults.injections import PATIENCE, CrowdHungError
 from faults.judge import arm_untruth, ending_of
 from faults.setting import Setting
 from faults.small_tasks import first_layout, some_moves_away
-from tamp_bringup.processes import NodeDiedError
+from tamp_bringup.processes import NODES, NodeDiedError
 from tamp_bringup.scene_observer import SimulationError, true_stacks
 from tamp_bringup.task import goal_text
 
 #: After which an answer is overdue, and how long one to a cancel may take then [s].
 ANSWER_SECONDS: Final = 60.0
 CANCEL_SECONDS: Final = 10.0
+#: Until a restarted perception_node says something, on a busy machine [s].
+GRAPH_SECONDS: Final = 40.0
 #: A fault of EXECUTE begins up to this much after its pick or place [s].
 _INTO_PHASE: Final = 0.4
 
@@ -163,15 +165,21 @@ def _wait(setting: Setting, fault: Fault, course: _Course) -> Answer | None:
         if course.begun is None and reached is not None and now >= reached + waits:
             _begin(setting, fault, course)
             since = time.monotonic()
-        if course.begun is not None and fault.seconds is not None and not course.ended:
-            if now >= course.begun + fault.seconds:
-                fault.injection.end(setting)
-                course.ended = True
-                since = time.monotonic()
+        if _is_over(fault, course, now):
+            fault.injection.end(setting)
+            course.ended = True
+            since = time.monotonic()
         if now > since + ANSWER_SECONDS:
             return None
         setting.processes.check()
         time.sleep(0.02)
+
+
+def _is_over(fault: Fault, course: _Course, now: float) -> bool:
+    """Whether a fault that passes has to end now."""
+    if course.begun is None or fault.seconds is None or course.ended:
+        return False
+    return now >= course.begun + fault.seconds
 
 
 def _begin(setting: Setting, fault: Fault, course: _Course) -> None:
@@ -184,6 +192,9 @@ def _begin(setting: Setting, fault: Fault, course: _Course) -> None:
 
 def _afterwards(setting: Setting, result: TrialResult) -> TrialResult:
     """A plain task must succeed: in the scene as it is if that is tidy, else after a reset."""
+    # What was killed has been started again; a person would wait until it is there, too.
+    setting.wait_for_nodes(*NODES)
+    setting.eyes.wait_for_graph(GRAPH_SECONDS)
     try:
         failure, tidy = _plain_task(setting, result.seed)
         if not failure:

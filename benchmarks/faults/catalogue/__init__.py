@@ -23,15 +23,21 @@ class UnknownFaultError(ValueError):
     """No fault has this name."""
 
 
-def faults_named(part: str) -> tuple[Fault, ...]:
-    """The fault of this name, or all in whose names it occurs; all for an empty string.
+def faults_named(names: str) -> tuple[Fault, ...]:
+    """The faults of these names, separated by commas; a part of a name stands for all that hold it.
+
+    Returns:
+        All for an empty string; in the catalogue's order.
 
     Raises:
         UnknownFaultError: there is none; lists what there is.
     """
-    exact = tuple(fault for fault in CATALOGUE if fault.name == part)
-    found = exact or tuple(fault for fault in CATALOGUE if part in fault.name)
-    if not found:
-        names = ", ".join(fault.name for fault in CATALOGUE)
-        raise UnknownFaultError(f"no fault is called {part!r}; there are {names}")
-    return found
+    found: set[str] = set()
+    for part in names.split(","):
+        exact = {fault.name for fault in CATALOGUE if fault.name == part}
+        alike = exact or {fault.name for fault in CATALOGUE if part in fault.name}
+        if not alike:
+            known = ", ".join(fault.name for fault in CATALOGUE)
+            raise UnknownFaultError(f"no fault is called {part!r}; there are {known}")
+        found |= alike
+    return tuple(fault for fault in CATALOGUE if fault.name in found)
