@@ -134,6 +134,113 @@ def test_silence_ends_the_plan(audience: int, taken_up: bool, limit: float, sent
     assert not linked.is_busy()
 
 
+def test_fault_5_a_plan_that_an_idle_motion_node_has_not_taken_up_is_published_again() -> None:
+    linked = Linked()
+    plan_id = linked.start()
+    linked.report("", IDLE)  # on its way when the plan came
+    assert len(linked.published) == 1
+    for _ in range(30):
+        linked.clock.seconds += 0.1
+        linked.report("", IDLE)
+    assert {plan.plan_id for plan in linked.published} == {plan_id}
+    assert len(linked.published) == 1 + 3  # at most once a second
+    linked.report(plan_id, OPTIMISING)
+    linked.clock.seconds += 1.5
+    linked.report("", IDLE)
+    assert len(linked.published) == 1 + 3
+
+
+def test_fault_5_a_plan_that_was_given_up_is_not_published_again() -> None:
+    linked = Linked()
+    linked.start()
+    linked.clock.seconds += 20.1
+    linked.report("", IDLE)
+    assert len(linked.published) == 1
+
+
+def test_a_plan_that_is_being_stopped_is_not_published_again() -> None:
+    linked = Linked()
+    linked.link.stop(linked.start())
+    linked.clock.seconds += 2.0
+    linked.report("", IDLE)
+    assert len(linked.published) == 1
+
+
+def test_a_motion_node_that_was_there_a_moment_ago_may_be_starting_again() -> None:
+    linked = Linked()
+    linked.report("", IDLE)
+    linked.audience = 0
+    linked.start()
+    linked.clock.on_wait = lambda: None
+    with pytest.raises(MotionSilentError):
+        linked.follow()
+    # It was heard just before, so it gets the time to take the plan up once it is silent for long.
+    assert linked.clock.seconds >= 1000.0 + linked.settings.motion_silence_timeout
+
+
+def test_fault_13_a_plan_that_a_talking_motion_node_passes_over_is_told_from_silence() -> None:
+    linked = Linked()
+    linked.start()
+
+    def beat() -> None:
+        if linked.clock.seconds % 1.0 < 0.05:
+            linked.report("", IDLE)
+
+    linked.clock.on_wait = beat
+    with pytest.raises(
+        MotionSilentError, match="motion_status arrives, but says nothing of it"
+    ) as e:
+        linked.follow()
+    assert (e.value.taken_up, e.value.speaks, e.value.untouched) == (False, True, True)
+
+
+def test_fault_13_a_motion_node_that_is_not_heard_at_all_may_have_carried_the_plan_out() -> None:
+    linked = Linked()
+    linked.start()
+    with pytest.raises(MotionSilentError, match="no motion_status arrives.*nobody knows") as caught:
+        linked.follow()
+    assert (caught.value.speaks, caught.value.untouched) == (False, False)
+
+
+def test_fault_13_a_plan_that_is_being_stopped_is_not_to_be_stopped_once_more() -> None:
+    linked = Linked()
+    plan_id = linked.start()
+    with pytest.raises(MotionBusyError, match="ros2 run planner_node stop"):
+        linked.link.check_free()
+    linked.link.stop(plan_id)
+    with pytest.raises(MotionBusyError, match="is being stopped; wait until the arm rests"):
+        linked.link.check_free()
+
+
+def test_fault_1_a_foreign_plan_is_told_with_what_to_do() -> None:
+    linked = Linked()
+    linked.report("foreign", EXECUTING)
+    with pytest.raises(MotionBusyError, match="ros2 run planner_node stop"):
+        linked.link.check_free()
+    linked.link.check_own()  # achieve_goal stops it
+
+
+def test_a_stop_that_may_have_been_lost_is_repeated_while_the_plan_goes_on() -> None:
+    linked = Linked()
+    plan_id = linked.start()
+    linked.report(plan_id, EXECUTING)
+    linked.link.stop(plan_id)
+    end = linked.clock.seconds + 10.0
+    linked.clock.on_wait = lambda: linked.report(plan_id, EXECUTING)
+    assert linked.link.follow(lambda _: None, lambda: linked.clock.seconds > end) is None
+    assert linked.stopped == [plan_id] * 4
+
+
+def test_whoever_cancels_does_not_wait_long_for_a_silent_motion_node() -> None:
+    linked = Linked()
+    plan_id = linked.start()
+    linked.report(plan_id, EXECUTING)
+    linked.link.stop(plan_id)
+    with pytest.raises(MotionSilentError):
+        linked.follow()
+    assert linked.clock.seconds < 1000.0 + 10.0
+
+
 def test_a_plan_that_nobody_follows_is_given_up_when_it_is_asked_for() -> None:
     linked = Linked()
     linked.start()

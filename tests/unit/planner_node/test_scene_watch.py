@@ -93,6 +93,43 @@ def test_a_needed_object_is_missed() -> None:
         watched.watch.latest(needed=frozenset({"pink_box", "red_box"}))
 
 
+def test_fault_10_a_clock_that_stopped_with_its_simulator_makes_no_scene_young() -> None:
+    clock = FakeClock()
+    watch = SceneWatch(Settings(graph_max_age=5.0), lambda: 10**9, clock)
+    watch.receive(sighting_of(START, 10**9))
+    clock.seconds += 4.9
+    watch.latest()
+    clock.seconds += 2.1
+    with pytest.raises(
+        NoSceneGraphError, match="nothing has arrived from perception for 7 s.*clock"
+    ):
+        watch.latest()
+
+
+def test_fault_10_a_slow_simulation_that_lives_is_not_refused() -> None:
+    clock = FakeClock()
+    watch = SceneWatch(Settings(graph_max_age=5.0), lambda: 10**9 + 2, clock)
+    for stamp in (1, 2):
+        watch.receive(sighting_of(START, 10**9 + stamp))
+        clock.seconds += 4.0
+        watch.latest()
+
+
+def test_fault_3_a_perception_that_stands_still_for_five_seconds_is_waited_for() -> None:
+    watched = Watched()
+    watched.see()
+    watched.clock.seconds += 1.0
+    asked = watched.clock.ros_now()
+    back = watched.clock.seconds + 5.0
+
+    def come_back() -> None:
+        if watched.clock.seconds > back:
+            watched.see()
+
+    watched.clock.on_wait = come_back
+    assert watched.watch.wait(never, after=asked).stacks == START
+
+
 def without_bottom(sighting: Sighting) -> Sighting:
     relations = sighting.graph.relations - {Relation("red_box", "up", "stack0")}
     return replace(sighting, graph=replace(sighting.graph, relations=relations))

@@ -14,17 +14,15 @@ from .plan import Plan
 from .report import Outcome
 from .scene import Scene
 
-_DOING: Final = {"pick": "picking", "place": "placing"}
+_DOING: Final = {"pick": "picking", "place": "placing", "home": "going home"}
 
 
 def describe_step(report: MotionReport) -> str:
     """What the arm is doing, such as "picking red_box, move 1 of 3"."""
-    doing = _DOING.get(report.phase, "")
-    what = f"{doing} {report.object_name}".strip() if doing else ""
-    if report.phase == "home":
-        what = "going home"
-    if not what or not report.moves_total:
-        return what or report.message or "moving"
+    doing = f"{_DOING.get(report.phase, 'moving')} {report.object_name}".rstrip()
+    what = report.message or doing
+    if report.phase == "home" or not report.moves_total:
+        return what
     return f"{what}, move {min(report.move + 1, report.moves_total)} of {report.moves_total}"
 
 
@@ -107,4 +105,5 @@ def account_for(message: str, outcome: Outcome, newest: MotionReport, silence: f
     if not clauses:
         return message
     told = "; ".join(clauses)
-    return f"{message.rstrip('.')}. {told[0].upper()}{told[1:]}"
+    end = "" if message.endswith((".", "?", "!")) else "."
+    return f"{message}{end} {told[0].upper()}{told[1:]}"

@@ -178,7 +178,6 @@ class ArmHome:
             self._because(f"the arm could not be brought home: {problem}")
             return False
         raise ArmStuckError(
-            f"the arm cannot be brought home: {problem}; "
-            f"{describe_arm(self._motion.newest, self._motion.silence)}. Clear its way, or take "
-            "what it holds out of its hand and move the arm home by hand, then ask again"
+            f"the arm cannot be brought home with an empty hand: {problem}. Clear its way, or take "
+            "what it holds out of its hand and move it home by hand, then ask again"
         )
