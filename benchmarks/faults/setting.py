@@ -17,6 +17,7 @@ from faults.relay import Relays
 from faults.topics import remappings, topics_of
 from planner_node.cli.client import PlannerClient
 from scene_graph import Stacks
+from sim_node.layouts import format_layout
 from tamp_bringup.processes import NODES, NodeProcesses
 
 #: How long a node may take until it is there [s].
@@ -44,6 +45,10 @@ class Setting:
     phase: Phase = Phase.PERCEIVE
     seed: int = 0
     asker: Asker | None = None
+
+    def remember_layout(self, layout: Stacks) -> None:
+        """A simulator that is started again, or a second one, shows the same blocks."""
+        self.parameters["sim_node"]["layout"] = format_layout(layout)
 
     def wait_for_nodes(self, *names: str, count: int = 1) -> bool:
         """Whether so many nodes of each name are there in time."""

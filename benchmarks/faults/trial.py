@@ -78,6 +78,8 @@ def run_trial(setting: Setting, fault: Fault, phase: Phase, trial: int, seed: in
     """
     started = time.monotonic()
     initial = first_layout(seed)
+    setting.processes.check()
+    setting.remember_layout(initial)
     setting.eyes.reset(initial)
     if setting.eyes.arm_is_home() is False:
         setting.eyes.remember_home()
