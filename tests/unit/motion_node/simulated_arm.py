@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_node.execution.arm_state import ArmState, ArmStateBox
-from motion_node.execution.executive import Plan
-from motion_node.phases import HOME, PICK, PLACE, Phase, PhasePath, Tool
+from motion_node.execution.plan import Plan
+from motion_node.grasps import Grasp
+from motion_node.phases import HOME, PICK, PLACE, Phase, PhasePath, Switch, Tool
 from motion_node.planner import Motion
 from motion_node.robots.joints import JointValues
 from motion_node.timing.limits import JointLimits
@@ -39,14 +40,27 @@ def phase(kind: str, move: int) -> Phase:
     holding = kind == PLACE
     name = "" if kind == HOME else BLOCKS[move]
     tool = Tool(0.01, 0.07, 0.1, name if holding else "", SQUEEZED if holding else OPEN)
-    return Phase(kind, move, name, None, None, tool, (), SQUEEZED if kind == PICK else OPEN)
+    grasp = None if kind == HOME else Grasp(0.0, 2 * HALF_BLOCK, 2 * HALF_BLOCK, 0.0, 0.0)
+    switch = Switch((0.5, 0.0, 0.1), 0.0, 2) if kind == PLACE else None
+    grip = SQUEEZED if kind == PICK else OPEN
+    return Phase(kind, move, name, switch, None, tool, (), grip, grasp)
 
 
-def timed(phases: Sequence[Phase], corners: Sequence[Array], fingers: Array) -> Trajectory:
+def holding_home(move: int, held: str, fingers: float) -> Phase:
+    """A way home with something in the hand."""
+    return Phase(HOME, move, "", None, None, Tool(0.01, 0.07, 0.1, held, fingers), (), fingers)
+
+
+def timed(
+    phases: Sequence[Phase],
+    corners: Sequence[Array],
+    fingers: Array,
+    opening: float | None = OPEN,
+) -> Trajectory:
     """Straight lines between the corners, one a phase."""
     lines = [np.linspace(a, b, 9) for a, b in pairwise(corners)]
     paths = [PhasePath(own, line) for own, line in zip(phases, lines)]
-    return time_paths(paths, LIMITS, TimingSettings(), fingers, OPEN)
+    return time_paths(paths, LIMITS, TimingSettings(), fingers, opening)
 
 
 def two_moves(start: Array = HOME_Q, fingers: Array | None = None) -> Trajectory:
@@ -59,8 +73,9 @@ def two_moves(start: Array = HOME_Q, fingers: Array | None = None) -> Trajectory
 
 
 def planned(trajectory: Trajectory) -> Motion:
-    """A motion of which only the trajectory counts, and that took a quarter of a second."""
-    return Motion((), (), trajectory, 0.0, 0.25)
+    """A motion of which only trajectory and phases count; it took a quarter of a second."""
+    phases = tuple(dict.fromkeys(interval.phase for interval in trajectory.intervals))
+    return Motion(phases, (), trajectory, 0.0, 0.25)
 
 
 class FakePlanner:
@@ -70,6 +85,8 @@ class FakePlanner:
         errors: raised instead, by the name of the method.
         while_solving: called in ``solve``, before it looks whether it is cancelled.
         ways_home: the numbers of moves done that ways home were asked for.
+        put_downs: the moves whose blocks were to be put down.
+        rises: what was in the hand where the arm was to rise and go home.
     """
 
     def __init__(self) -> None:
@@ -77,6 +94,8 @@ class FakePlanner:
         self.while_solving: Callable[[], None] = lambda: None
         self.asked: list[tuple[object, ...]] = []
         self.ways_home: list[int] = []
+        self.put_downs: list[int] = []
+        self.rises: list[str] = []
 
     def solve(
         self, graph: Any, moves: Any, arm: Array, fingers: Array, names: Any, cancelled: Any
@@ -95,6 +114,26 @@ class FakePlanner:
         self.ways_home.append(moves_done)
         return planned(timed([phase(HOME, moves_done)], [arm, HOME_Q], fingers))
 
+    def solve_put_down(self, _motion: Motion, move: int, arm: Array) -> Motion:
+        self.put_downs.append(move)
+        if "solve_put_down" in self.errors:
+            raise self.errors["solve_put_down"]
+        phases = [phase(PLACE, move), phase(HOME, move + 1)]
+        corners = [arm, SWITCHES[2 * move + 1], HOME_Q]
+        return planned(timed(phases, corners, np.full(2, SQUEEZED), opening=None))
+
+    def solve_rise_home(
+        self, _motion: Motion | None, arm: Array, fingers: Array, held: str = ""
+    ) -> Motion:
+        self.rises.append(held)
+        if "solve_rise_home" in self.errors:
+            raise self.errors["solve_rise_home"]
+        if not held:
+            return planned(timed([phase(HOME, 0)], [arm, HOME_Q], fingers))
+        pressing = float(np.mean(fingers)) - 0.01
+        way = [holding_home(0, held, pressing)]
+        return planned(timed(way, [arm, HOME_Q], np.full(2, pressing), opening=None))
+
 
 class SimulatedArm:
     """Follows every trajectory exactly; whoever waits makes its time go on.
@@ -103,10 +142,13 @@ class SimulatedArm:
 
     Attributes:
         silent: publishes no joint states.
+        frozen: publishes the same positions for ever.
         deaf: ignores trajectories.
         stuck: stays where it is.
         frozen_clock: stamps stand still.
         block: half of what the fingers close on [m]; 0: nothing.
+        cut_at: the next trajectory ends there [s]; 0: at its end.
+        fingers_stuck_at: where the fingers stay [m]; negative: they obey.
         trembling: by how much its joints differ from one state to the next [rad].
         slowness: seconds of this machine a second of the arm's.
         sent: the trajectories, and the joints when each arrived.
@@ -118,7 +160,9 @@ class SimulatedArm:
         self.silent = self.deaf = self.stuck = self.frozen_clock = False
         self.block, self.slowness, self.trembling = HALF_BLOCK, 1.0, 0.0
         self.sent: list[tuple[Trajectory, JointValues]] = []
-        self.joints = JointValues(HOME_Q.copy(), np.full(2, OPEN))
+        self.joints = self._seen = JointValues(HOME_Q.copy(), np.full(2, OPEN))
+        self.frozen, self.fingers_stuck_at, self.cut_at = False, -1.0, 0.0
+        self.closed, self.problem, self.standing = False, "", False
         self._time, self._stamp, self._began = 1000.0, 50.0, 0.0
         self._box = ArmStateBox(self.now)
         self._following: Trajectory | None = None
@@ -126,6 +170,15 @@ class SimulatedArm:
 
     def at_home(self) -> bool:
         return bool(np.abs(self.joints.arm - HOME_Q).max() < 0.01)
+
+    def be_quiet(self, seconds: float, standing: bool) -> None:
+        """No joint states for a while [s]; ``standing``: the arm and its clock stand still, too."""
+        self.silent, self.standing, end = True, standing, self._time + seconds
+
+        def again() -> None:
+            self.silent = self.standing = False
+
+        self.when(lambda: self._time > end, again)
 
     def when(self, condition: Callable[[], bool], action: Callable[[], object]) -> None:
         """Does something once, as soon as a condition holds."""
@@ -155,17 +208,24 @@ class SimulatedArm:
 
     def send(self, trajectory: Trajectory) -> None:
         self.sent.append((trajectory, self.joints))
-        if not self.deaf:
-            self._following, self._began = trajectory, self._stamp
+        jump = float(np.abs(trajectory.positions.arm[0] - self.joints.arm).max())
+        if self.deaf or jump > 0.1:
+            return
+        if self.cut_at > 0.0:
+            trajectory, self.cut_at = trajectory.cut(0.0, self.cut_at), 0.0
+        self._following, self._began = trajectory, self._stamp
 
     def _tick(self) -> None:
         self._time += self.PERIOD * self.slowness
         assert self._time < 1e6, "nobody ends this"
-        if not self.frozen_clock:
+        if not (self.frozen_clock or self.standing):
             self._stamp += self.PERIOD
         if self._following is not None and not self.stuck:
             where, _ = self._following.sample(self._stamp - self._began)
-            self.joints = JointValues(where.arm, np.maximum(where.fingers, self.block))
+            fingers = np.maximum(where.fingers, self.block)
+            if self.fingers_stuck_at >= 0.0:
+                fingers = np.full(2, self.fingers_stuck_at)
+            self.joints = JointValues(where.arm, fingers)
         for event in list(self._events):
             condition, action = event
             if condition():
@@ -173,5 +233,6 @@ class SimulatedArm:
                 action()
         if not self.silent:
             self.trembling *= -1
-            arm = self.joints.arm + self.trembling / 2
-            self._box.put(self._stamp, JointValues(arm, self.joints.fingers))
+            seen = self._seen if self.frozen else self.joints
+            self._seen = seen
+            self._box.put(self._stamp, JointValues(seen.arm + self.trembling / 2, seen.fingers))

@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import threading
+from itertools import chain, repeat
 
 import numpy as np
 import pytest
 
 from motion_node.execution.arm_state import REST_TOLERANCE, ArmStateBox
+from motion_node.execution.lived_time import LONGEST_GAP, LivedTime
 from motion_node.robots.joints import JointValues
 
 
@@ -84,3 +86,39 @@ def test_who_waits_is_woken_by_another_thread() -> None:
     thread.join()
     assert state is not None
     assert state.stamp == 3.0
+
+
+@pytest.mark.timeout(60)
+def test_who_waits_is_woken_when_the_node_ends() -> None:
+    box = ArmStateBox()
+    box.put(3.0, joints())
+    thread = threading.Thread(target=box.close)
+    thread.start()
+    assert box.wait(box.newest(), 3600.0) is None
+    thread.join()
+    assert box.closed
+    assert box.wait(None, 3600.0) is None
+
+
+def test_what_cannot_be_used_is_remembered_until_something_can() -> None:
+    box = ArmStateBox()
+    box.refuse("no names")
+    assert box.problem == "no names"
+    assert box.newest() is None
+    box.put(0.0, joints())
+    assert box.problem == ""
+
+
+def test_fault_3_time_in_which_the_process_was_stopped_does_not_count() -> None:
+    ticks = iter([10.0, 10.5, 11.0, 16.0, 16.5])
+    lived = LivedTime(lambda: next(ticks))
+    assert [lived() for _ in range(4)] == [10.5, 11.0, 11.0 + LONGEST_GAP, 11.5 + LONGEST_GAP]
+
+
+def test_fault_3_a_wait_does_not_end_because_the_process_was_stopped_meanwhile() -> None:
+    """The clock jumps by a minute at the first look after the wait began."""
+    ticks = chain([0.0, 0.0, 0.0], repeat(60.0))
+    box = ArmStateBox(LivedTime(lambda: next(ticks)))
+    threading.Timer(0.3, box.put, [1.0, joints()]).start()
+    state = box.wait(None, 10.0)
+    assert state is not None

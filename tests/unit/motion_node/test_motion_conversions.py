@@ -16,7 +16,7 @@ from tamp_interfaces.msg import SymbolicPlan
 from tamp_runtime.messages.scene_graph import graph_to_message
 
 from motion_node.conversions import joint_positions, plan_from_message, trajectory_to_message
-from motion_node.errors import InvalidPlanError
+from motion_node.errors import InvalidPlanError, JointStateError
 from motion_node.robots import PANDA
 from scene_graph import Move
 
@@ -70,19 +70,25 @@ def test_joint_states_are_read_by_name() -> None:
         name=[RIGHT, "elbow", "head", LEFT, "shoulder"], position=[0.2, 2.0, 9.0, 0.1, 1.0]
     )
     positions = joint_positions(message, ARM)
-    assert positions is not None
     assert positions.arm.tolist() == [1.0, 2.0]
     assert positions.fingers.tolist() == [0.1, 0.2]
 
 
 @pytest.mark.parametrize(
-    ("names", "values"),
+    ("names", "values", "sentence"),
     [
-        (["shoulder", "elbow", LEFT], [1.0, 2.0, 0.1]),
-        (["shoulder", "elbow", LEFT, RIGHT], [1.0, 2.0, 0.1]),
-        (["shoulder", "elbow", LEFT, RIGHT], [1.0, float("nan"), 0.1, 0.1]),
-        ([], []),
+        (["shoulder", "elbow", LEFT], [1.0, 2.0, 0.1], f"without {RIGHT}"),
+        (["shoulder", "elbow", LEFT, RIGHT], [1.0, 2.0, 0.1], "with 4 names and 3 positions"),
+        (
+            ["shoulder", "elbow", LEFT, RIGHT],
+            [1.0, float("nan"), 0.1, 0.1],
+            "without finite positions of elbow",
+        ),
+        ([], [], "without shoulder, elbow"),
     ],
 )
-def test_joint_states_that_lack_something_are_none(names: list[str], values: list[float]) -> None:
-    assert joint_positions(JointState(name=names, position=values), ARM) is None
+def test_fault_13_joint_states_that_lack_something_say_what(
+    names: list[str], values: list[float], sentence: str
+) -> None:
+    with pytest.raises(JointStateError, match=f"joint_states arrive {sentence}"):
+        joint_positions(JointState(name=names, position=values), ARM)

@@ -3,51 +3,22 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from simulated_arm import BLOCKS, OPEN, PLAN, FakePlanner, SimulatedArm, two_moves
-from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
+from executive_bench import Bench
+from simulated_arm import (
+    BLOCKS,
+    OPEN,
+    PLAN,
+    two_moves,
+)
+from tamp_runtime.motion_report import ArmPlace, MotionReason, MotionReport, MotionState
 
 from motion_node.errors import KEYFRAMES, CancelledError, InfeasibleError, InvalidPlanError
-from motion_node.execution.executive import Executive
-from motion_node.execution.follow import ExecutionSettings
+from motion_node.execution.settings import ExecutionSettings
 from motion_node.phases import HOME, PICK, PLACE
-
-
-class Bench:
-    """An executive with its neighbours, and what it reported."""
-
-    def __init__(self) -> None:
-        self.arm, self.planner = SimulatedArm(), FakePlanner()
-        self.reports: list[MotionReport] = []
-        self.stop = threading.Event()
-        self.planners: Iterator[FakePlanner | None] = iter(lambda: self.planner, 0)
-        self.settings = ExecutionSettings()
-        self.executive = Executive(
-            lambda: next(self.planners), self.arm, self.arm.send, lambda: self.settings
-        )
-
-    def carry_out(self) -> MotionReport:
-        """Carries the two moves out; the report that ends them."""
-        self.executive.carry_out(PLAN, self.stop, self.reports.append)
-        ends = [report for report in self.reports if report.state.ended]
-        assert ends == self.reports[-1:], "there is one end, and nothing after it"
-        assert self.executive.report == ends[0]
-        return ends[0]
-
-    def when(
-        self, phase: str, move: int, action: Callable[[], object], progress: float = 0
-    ) -> None:
-        """Does something as soon as that phase is reported."""
-
-        def there() -> bool:
-            report = self.executive.report
-            return (report.phase, report.move) == (phase, move) and report.progress > progress
-
-        self.arm.when(there, action)
 
 
 @pytest.fixture
@@ -68,6 +39,8 @@ def test_a_plan_is_carried_out_and_reported(bench: Bench) -> None:
         progress=1.0,
         optimisation_seconds=0.25,
         duration=two_moves().duration,
+        arm=ArmPlace.HOME,
+        hand=(0.0, 0.0, 0.5),
     )
     assert bench.arm.at_home()
     assert len(bench.arm.sent) == 1
@@ -201,12 +174,14 @@ def test_joint_states_that_stop_end_the_execution(bench: Bench) -> None:
     assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.NO_JOINT_STATES)
 
 
-def test_an_arm_stuck_with_a_block_in_hand_is_not_sent_home(bench: Bench) -> None:
+def test_an_arm_that_stays_stuck_with_a_block_says_what_it_holds_and_where(bench: Bench) -> None:
     bench.when(PLACE, 0, lambda: setattr(bench.arm, "stuck", True))
     end = bench.carry_out()
     assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.TRACKING_LOST)
-    assert end.moves_done == 0
-    assert not bench.planner.ways_home
+    assert "falls behind" in end.message.split(";")[0]
+    assert "the arm could not go home" in end.message
+    assert end.message.endswith("m holding green_box")
+    assert (end.moves_done, end.arm, end.held) == (0, ArmPlace.RESTING, BLOCKS[0])
 
 
 def test_an_arm_that_obeys_again_goes_home_with_its_empty_hand(bench: Bench) -> None:
@@ -231,11 +206,21 @@ def test_fingers_that_close_on_nothing_send_the_arm_home(bench: Bench, move: int
 
 def test_a_way_home_that_is_blocked_is_said(bench: Bench) -> None:
     bench.arm.block = 0.0
-    bench.planner.errors["solve_way_home"] = InfeasibleError("path", "clearance of hand to stack1")
+    for way in ("solve_way_home", "solve_rise_home"):
+        bench.planner.errors[way] = InfeasibleError("path", "clearance of hand to stack1")
     end = bench.carry_out()
     assert end.reason is MotionReason.GRASP_LOST
     assert "the arm could not go home" in end.message
     assert "stack1" in end.message
+    assert (end.arm, end.held) == (ArmPlace.RESTING, "")
+
+
+def test_where_the_known_way_home_is_blocked_the_arm_rises_first(bench: Bench) -> None:
+    bench.arm.block = 0.0
+    bench.planner.errors["solve_way_home"] = InfeasibleError("path", "clearance of hand to stack1")
+    end = bench.carry_out()
+    assert end.message.endswith("; the arm is home")
+    assert bench.planner.rises == [""]
 
 
 def test_a_defect_is_reported_and_raised(bench: Bench) -> None:

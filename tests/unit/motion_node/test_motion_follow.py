@@ -8,7 +8,9 @@ import pytest
 from simulated_arm import OPEN, SQUEEZED, SimulatedArm, two_moves
 from tamp_runtime.motion_report import MotionReason
 
-from motion_node.execution.follow import ExecutionError, ExecutionSettings, Follower
+from motion_node.execution.errors import ExecutionError
+from motion_node.execution.follow import Follower
+from motion_node.execution.settings import ExecutionSettings
 from motion_node.phases import HOME, PICK, PLACE
 
 
@@ -76,11 +78,12 @@ def test_joint_states_that_stop_end_it(arm: SimulatedArm, follower: Follower) ->
         follower.follow(two_moves())
     assert caught.value.reason is MotionReason.NO_JOINT_STATES
     assert not caught.value.recoverable
+    assert "goes on along its trajectory, which ends at home" in str(caught.value)
 
 
 def test_a_clock_that_stands_still_ends_it(arm: SimulatedArm, follower: Follower) -> None:
     arm.when(lambda: follower.time > 1.0, lambda: setattr(arm, "frozen_clock", True))
-    with pytest.raises(ExecutionError, match="time stands still") as caught:
+    with pytest.raises(ExecutionError, match="time has stood still") as caught:
         follower.follow(two_moves())
     assert caught.value.reason is MotionReason.TIMEOUT
 
@@ -97,7 +100,7 @@ def test_an_arm_that_refuses_is_reported(arm: SimulatedArm, follower: Follower) 
     with pytest.raises(ExecutionError, match="does not start") as caught:
         follower.follow(two_moves())
     assert caught.value.reason is MotionReason.TRACKING_LOST
-    assert not caught.value.recoverable
+    assert caught.value.recoverable
 
 
 def test_an_arm_that_is_stuck_is_held_where_it_is_and_presses_on(
@@ -108,8 +111,8 @@ def test_an_arm_that_is_stuck_is_held_where_it_is_and_presses_on(
     arm.when(lambda: follower.time > middle, lambda: setattr(arm, "stuck", True))
     with pytest.raises(ExecutionError, match="place of green_box") as caught:
         follower.follow(two_moves())
-    assert not caught.value.recoverable
-    assert not follower.empty_handed
+    assert caught.value.recoverable
+    assert (follower.grip.held, follower.grip.move) == ("green_box", 0)
     hold, where = arm.sent[-1]
     np.testing.assert_allclose(hold.positions.arm, [where.arm, where.arm])
     np.testing.assert_allclose(hold.positions.fingers, SQUEEZED)

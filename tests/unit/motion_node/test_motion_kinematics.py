@@ -34,6 +34,9 @@ def test_every_link_is_where_pybullet_says(urdf: str) -> None:
             expected = np.array(pybullet.getMatrixFromQuaternion(state[5])).reshape(3, 3)
             np.testing.assert_allclose(position.ravel(), state[4], atol=1e-5)
             np.testing.assert_allclose(rotation, expected, atol=1e-5)
+            in_numbers = kinematics.pose_at(link, q)
+            np.testing.assert_allclose(in_numbers[:3, 3], state[4], atol=1e-5)
+            np.testing.assert_allclose(in_numbers[:3, :3], expected, atol=1e-5)
     oracle.close()
 
 
@@ -42,6 +45,8 @@ def test_prismatic_joints_move_along_their_axis(urdf: str) -> None:
     function = kinematics.pose_function("panda_leftfinger")
     closed, opened = (np.array(function(value)[1]).ravel() for value in (0.0, 0.03))
     assert np.linalg.norm(opened - closed) == pytest.approx(0.03)
+    by_numbers = kinematics.pose_at("panda_leftfinger", np.array([0.03]))[:3, 3]
+    np.testing.assert_allclose(by_numbers, opened)
 
 
 def test_limits_are_those_of_the_description(urdf: str) -> None:

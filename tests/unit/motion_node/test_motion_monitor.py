@@ -162,3 +162,69 @@ def test_a_clock_that_goes_back_is_noticed(trajectory: Trajectory) -> None:
     monitor = Monitor(trajectory, ArmState(100.0, 0.0, HOME, 1.0), MonitorSettings())
     assert monitor.update(ArmState(100.1, 0.1, HOME, 1.0)) is Verdict.GOING
     assert monitor.update(ArmState(0.0, 0.2, HOME, 0.0)) is Verdict.CLOCK_WENT_BACK
+
+
+def carrying(trajectory: Trajectory) -> float:
+    """A time in the middle of the first way with a block."""
+    way = trajectory.intervals[2]
+    assert way.holding
+    return (way.start + way.end) / 2
+
+
+@pytest.mark.parametrize("start", [0.2, 2.0, 5.0, 8.0])
+@pytest.mark.parametrize("seconds", [1.0, 5.0])
+def test_fault_3_joint_states_that_were_lost_for_a_while_do_no_harm(
+    trajectory: Trajectory, start: float, seconds: float
+) -> None:
+    """The arm went on meanwhile; news come in one leap."""
+    monitor = Monitor(trajectory, ArmState(1000.0, 0.0, HOME, 1.0), MonitorSettings())
+    for time in np.arange(0.0, trajectory.duration + 6.0, 1 / 60):
+        if start < time < start + seconds:
+            continue
+        joints = squeezed(trajectory.sample(time - 0.05)[0])
+        verdict = monitor.update(ArmState(1000.0 + time, time, joints, 0.0))
+        if verdict is not Verdict.GOING:
+            break
+    assert verdict is Verdict.ARRIVED
+
+
+def test_silence_does_not_make_a_short_disturbance_long(trajectory: Trajectory) -> None:
+    monitor = Monitor(trajectory, ArmState(1000.0, 0.0, HOME, 1.0), MonitorSettings())
+    for time in np.arange(0.0, 8.0, 1 / 60):
+        if 4.05 < time < 6.0:
+            continue
+        disturbed = 0.4 if 4.0 < time < 6.05 else 0.0
+        joints = pushed(squeezed(trajectory.sample(time)[0]), 3, disturbed)
+        assert monitor.update(ArmState(1000.0 + time, time, joints, 0.0)) is Verdict.GOING
+
+
+def test_fault_4_fingers_that_do_not_close_are_noticed(trajectory: Trajectory) -> None:
+    verdict, time, monitor, _ = watch(
+        trajectory, lambda t: JointValues(trajectory.sample(t)[0].arm, HOME.fingers)
+    )
+    assert verdict is Verdict.NOT_CLOSED
+    assert time < carrying(trajectory)
+    assert monitor.block is not None
+    assert monitor.block.object_name == "green_box"
+
+
+def test_fault_4_fingers_that_do_not_open_are_noticed(trajectory: Trajectory) -> None:
+    middle, half = carrying(trajectory), np.full(2, EDGE / 2)
+
+    def arm(t: float) -> JointValues:
+        joints = squeezed(trajectory.sample(t)[0])
+        return JointValues(joints.arm, half) if t > middle else joints
+
+    verdict, _, monitor, _ = watch(trajectory, arm)
+    assert verdict is Verdict.NOT_OPENED
+    assert monitor.trajectory.interval_at(monitor.time) is trajectory.intervals[4]
+    assert monitor.block is not None
+    assert (monitor.block.object_name, monitor.block.move) == ("green_box", 0)
+
+
+def test_fingers_that_move_late_are_no_fault(trajectory: Trajectory) -> None:
+    def arm(t: float) -> JointValues:
+        fingers = trajectory.sample(t - 0.3)[0].fingers
+        return squeezed(JointValues(trajectory.sample(t)[0].arm, fingers))
+
+    assert watch(trajectory, arm)[0] is Verdict.ARRIVED

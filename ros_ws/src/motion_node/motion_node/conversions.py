@@ -10,8 +10,8 @@ from tamp_runtime.messages.scene_graph import graph_from_message, moves_from_mes
 from tamp_runtime.messages.stamps import duration_from_seconds
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from .errors import InvalidPlanError
-from .execution.executive import Plan
+from .errors import InvalidPlanError, JointStateError
+from .execution.plan import Plan
 from .robots import Arm
 from .robots.joints import JointValues
 from .timing.trajectory import Trajectory
@@ -47,14 +47,20 @@ def trajectory_to_message(trajectory: Trajectory, arm: Arm) -> JointTrajectory:
     return message
 
 
-def joint_positions(message: JointState, arm: Arm) -> JointValues | None:
-    """Positions of all joints of an arm [rad, m]; None if one is missing or not finite."""
-    if len(message.position) != len(message.name):
-        return None
+def joint_positions(message: JointState, arm: Arm) -> JointValues:
+    """Positions of all joints of an arm [rad, m].
+
+    Raises:
+        JointStateError: if one is missing or not finite; the sentence names it.
+    """
+    names, values = len(message.name), len(message.position)
+    if values != names:
+        raise JointStateError(f"joint_states arrive with {names} names and {values} positions")
     found = dict(zip(message.name, message.position))
-    if any(name not in found for name in arm.joint_names):
-        return None
+    if missing := [name for name in arm.joint_names if name not in found]:
+        raise JointStateError(f"joint_states arrive without {', '.join(missing)}")
     positions = np.array([found[name] for name in arm.joint_names])
     if not np.isfinite(positions).all():
-        return None
+        bad = [name for name, fine in zip(arm.joint_names, np.isfinite(positions)) if not fine]
+        raise JointStateError(f"joint_states arrive without finite positions of {', '.join(bad)}")
     return JointValues(*np.split(positions, [len(arm.arm_joints)]))

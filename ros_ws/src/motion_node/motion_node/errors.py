@@ -69,3 +69,7 @@ class InfeasibleError(MotionError):
 
 class CancelledError(MotionError):
     """The optimisation was stopped on request."""
+
+
+class JointStateError(MotionError):
+    """A joint state that does not tell where the arm is; the sentence says what it lacks."""

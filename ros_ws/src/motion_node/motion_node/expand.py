@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from scene_graph import Move, Place, base_name, wrap_line
 
-from .blocks import Block, Scene, placed
+from .blocks import Block, Column, Scene, placed
 from .errors import InvalidPlanError
 from .grasps import Circumstances, Grasp, choose_grasp
 from .phases import HOME, PICK, PLACE, Phase, Switch, Tool
@@ -137,3 +138,55 @@ def way_home(phases: Sequence[Phase], moves_done: int, gripper: Gripper) -> Phas
     first = following[0] if following else phases[-1]
     tool = open_tool(gripper)
     return replace(phases[-1], start=None, columns=first.columns, tool=tool, move=first.move)
+
+
+def put_down(phases: Sequence[Phase], move: int) -> list[Phase] | None:
+    """The rest of a move whose block is in the hand, from wherever it is, and the way home.
+
+    None if the phases do not place that block.
+    """
+    for phase, following in pairwise(phases):
+        if phase.kind == PLACE and phase.move == move:
+            home = replace(
+                phases[-1], start=phase.switch, columns=following.columns, move=following.move
+            )
+            return [replace(phase, start=None), home]
+    return None
+
+
+def rise_home(
+    point: tuple[float, float, float],
+    stacks: int,
+    top: float,
+    tool: Tool,
+    move: int = 0,
+) -> Phase:
+    """Straight up to a height, and home: the way where nobody knows what stands around the hand.
+
+    Whatever it is, the hand has come down beside it, and above ``top`` there is nothing. So it
+    rises as if it stood in the middle of a stack of that height.
+
+    Args:
+        point: the tool centre point in world [m].
+        stacks: how many stacks there are in the motion problem.
+        top: [m]
+        tool: the hand with what it holds.
+        move: as in ``Phase.move``.
+    """
+    column = Column(point[:2], (0.0, 0.0), top)
+    return Phase(HOME, move, "", None, None, tool, (column,) * stacks, tool.finger)
+
+
+def something_held(gripper: Gripper, fingers: float, name: str, squeeze: float) -> Tool:
+    """The hand around something of which only its width is known; it is taken for a big block.
+
+    Args:
+        fingers: where the fingers stand [m].
+    """
+    return Tool(
+        half_x=max(gripper.finger_thickness, gripper.finger_travel),
+        half_y=fingers + gripper.finger_depth,
+        bottom=gripper.tcp_offset + gripper.finger_travel,
+        held=name,
+        finger=max(0.0, fingers - squeeze),
+    )

@@ -7,6 +7,7 @@ import time
 import traceback
 from typing import Any
 
+import numpy as np
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
@@ -19,13 +20,17 @@ from tamp_runtime.messages.stamps import seconds
 from tamp_runtime.motion_report import MotionReport, MotionState
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
-from tamp_runtime.qos import LATCHED, RELIABLE, SENSOR_DATA
+from tamp_runtime.presence import Presence
+from tamp_runtime.qos import LATCHED, RELIABLE, SENSOR_DATA, STATUS
 from trajectory_msgs.msg import JointTrajectory
 
 from .conversions import joint_positions, plan_from_message, trajectory_to_message
-from .errors import MotionError
+from .errors import JointStateError, MotionError
 from .execution.arm_state import ArmStateBox
+from .execution.condition import Condition
 from .execution.executive import Executive
+from .execution.follow import Follower
+from .execution.settings import ExecutionSettings
 from .execution.worker import PlanWorker
 from .parameters import (
     PARAMETERS,
@@ -47,12 +52,14 @@ class MotionNode(Node):
 
     Subscribes:
         symbolic_plan (tamp_interfaces/SymbolicPlan, latched): the moves to carry out; without
-            moves, a request to stop. Plans published before this node started are ignored.
+            moves, a request to stop, or to bring home an arm that no plan moves. Plans published
+            before this node started are ignored.
         joint_states (sensor_msgs/JointState)
         robot_description (std_msgs/String, latched): URDF
     Publishes:
         joint_trajectory (trajectory_msgs/JointTrajectory): starts at once, replaces the running one
-        motion_status (tamp_interfaces/MotionStatus): at every change, once a second while busy
+        motion_status (tamp_interfaces/MotionStatus, the newest ones are kept for late listeners):
+            at every change, and once a second
 
     Callbacks only store what they hear; one worker thread carries out plans.
     """
@@ -67,23 +74,37 @@ class MotionNode(Node):
         self._states = ArmStateBox()
         self._planner: MotionPlanner | None = None
         self._description = ""
-        self._warned_about_joints = False
 
         self._trajectories = self.create_publisher(JointTrajectory, "joint_trajectory", RELIABLE)
-        self._statuses = self.create_publisher(MotionStatus, "motion_status", RELIABLE)
+        self._statuses = self.create_publisher(MotionStatus, "motion_status", STATUS)
+        self._presence = Presence(self, "motion_node")
+        follower = Follower(self._states, self._send, self._settings())
+        condition = Condition(
+            self._states,
+            lambda: follower.grip,
+            np.array(self._arm.home),
+            self._arm.gripper.finger_travel,
+            lambda q: self._planner.model.tool_at(q) if self._planner else None,
+            lambda: self._settings().monitor.goal_tolerance,
+        )
         executive = Executive(
             lambda: self._planner,
             self._states,
-            self._send,
-            lambda: execution_settings(self._values),
+            follower,
+            condition,
+            self._settings,
+            self._presence.conflict,
         )
-        self._worker = PlanWorker(executive, self._publish, self._on_defect)
+        self._worker = PlanWorker(
+            executive, condition, self._publish, self._on_defect, self._presence.conflict
+        )
         streams, plans = MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()
+        descriptions = MutuallyExclusiveCallbackGroup()  # problems are built there for seconds
         self.create_subscription(
             JointState, "joint_states", self._on_joint_state, SENSOR_DATA, callback_group=streams
         )
         self.create_subscription(
-            String, "robot_description", self._on_description, LATCHED, callback_group=plans
+            String, "robot_description", self._on_description, LATCHED, callback_group=descriptions
         )
         with_info: Any = self._on_plan  # rclpy passes the message's times to a second argument
         self.create_subscription(
@@ -100,8 +121,12 @@ class MotionNode(Node):
 
     def destroy_node(self) -> None:
         """The running trajectory goes on: it ends at home with an empty hand, if it is not cut."""
+        self._states.close()
         self._worker.close(timeout=2.0)
         super().destroy_node()
+
+    def _settings(self) -> ExecutionSettings:
+        return execution_settings(self._values)
 
     # What is heard
 
@@ -111,13 +136,14 @@ class MotionNode(Node):
             self._planner.timing = timing_settings(self._values)
 
     def _on_joint_state(self, message: JointState) -> None:
-        positions = joint_positions(message, self._arm)
-        if positions is not None:
-            self._states.put(seconds(message.header.stamp) or time.monotonic(), positions)
-        elif not self._warned_about_joints:
-            self._warned_about_joints = True
-            names = ", ".join(self._arm.joint_names)
-            self.get_logger().warning(f"joint_states without finite positions of all of {names}")
+        try:
+            positions = joint_positions(message, self._arm)
+        except JointStateError as error:
+            if str(error) != self._states.problem:
+                self.get_logger().warning(str(error))
+            self._states.refuse(str(error))
+            return
+        self._states.put(seconds(message.header.stamp) or time.monotonic(), positions)
 
     def _on_description(self, message: String) -> None:
         if message.data == self._description:

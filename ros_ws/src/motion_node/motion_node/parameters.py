@@ -9,8 +9,8 @@ from typing import Any
 
 from tamp_runtime.parameters import ParameterSpec
 
-from .execution.follow import ExecutionSettings
 from .execution.monitor import MonitorSettings
+from .execution.settings import ExecutionSettings
 from .nlp import SOLVERS
 from .robots import ARMS, PANDA, Arm
 from .settings import PathSettings, PhaseSettings, Settings
@@ -185,7 +185,7 @@ PARAMETERS = (
     _spec(
         "joint_state_timeout",
         _EXECUTION.joint_state_timeout,
-        "Silence of joint_states that ends the execution [s, wall time].",
+        "Silence of joint_states, or of their clock, that ends the execution [s, wall time].",
         0.1,
         600.0,
     ),

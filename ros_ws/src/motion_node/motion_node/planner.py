@@ -6,6 +6,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,10 +16,10 @@ from scene_graph import Move, SceneGraph
 from .blocks import read_scene
 from .bounds import Keyframes, PathProblem, SwitchProblems, check_widths
 from .constraints import Clearances, Constraint, default_constraints
-from .errors import CancelledError
-from .expand import expand, way_home
+from .errors import PATH, CancelledError, InfeasibleError
+from .expand import expand, open_tool, put_down, rise_home, something_held, way_home
 from .nlp import SOLVERS
-from .phases import HOME, Phase, PhasePath
+from .phases import HOME, PLACE, Phase, PhasePath
 from .robots import PANDA, Arm
 from .robots.inverse_kinematics import InverseKinematics
 from .robots.model import ArmModel
@@ -28,6 +29,13 @@ from .timing.time_paths import time_paths
 from .timing.trajectory import Trajectory
 
 Array = NDArray[np.float64]
+
+#: Number of stacks where nobody has said how many there are.
+USUAL_STACKS: Final = 3
+#: No stack is taken to be higher than this above the table, where nobody knows [m].
+TALLEST: Final = 0.35
+#: Above the highest known stack, where the arm cannot rise to ``TALLEST`` [m].
+SPARE_RISE: Final = 0.03
 
 
 @dataclass(frozen=True)
@@ -152,7 +160,57 @@ class MotionPlanner:
         """
         begin = time.perf_counter()
         home = way_home(motion.phases, moves_done, self.arm.gripper)
-        return self._solve([home], motion.floor, arm, fingers, lambda: False, begin)
+        return self._solve([home], motion.floor, arm, fingers, begin=begin)
+
+    def solve_put_down(self, motion: Motion, move: int, arm: Array) -> Motion:
+        """The rest of a move whose block is in the hand, from wherever the arm is, and home.
+
+        Raises:
+            InfeasibleError: if there is no such path, or the motion does not place that block.
+        """
+        begin = time.perf_counter()
+        phases = put_down(motion.phases, move)
+        if phases is None:
+            raise InfeasibleError(PATH, "a place for the block", move=move, phase=PLACE)
+        # The fingers press on: where they stand is not where they are sent.
+        pressing = np.full(2, phases[0].tool.finger)
+        return self._solve(phases, motion.floor, arm, pressing, begin=begin, opening=False)
+
+    def solve_rise_home(
+        self, motion: Motion | None, arm: Array, fingers: Array, held: str = ""
+    ) -> Motion:
+        """Straight up, and home, whatever stands around the hand; what is held stays in it.
+
+        Args:
+            motion: the last one that is known, which says how high stacks are; there may be none.
+            held: what the hand holds.
+
+        Raises:
+            InfeasibleError: if there is no such path.
+        """
+        begin = time.perf_counter()
+        floor, stacks, top = 0.0, USUAL_STACKS, TALLEST
+        tool = open_tool(self.arm.gripper)
+        if held:
+            opening = float(np.mean(fingers))
+            tool = something_held(self.arm.gripper, opening, held, self.settings.squeeze)
+        if motion is not None and motion.phases:
+            floor, stacks = motion.floor, len(motion.phases[0].columns)
+            top = max(column.top for phase in motion.phases for column in phase.columns)
+            for phase in motion.phases:
+                if held and phase.tool.held == held:
+                    tool = phase.tool
+        x, y, z = (float(value) for value in self.model.tool_at(arm))
+        fingers = np.full(2, tool.finger) if held else fingers
+        lower = z - self.settings.path.lift
+        # Where the arm cannot rise as high as would be safe, less has to do.
+        for height in (floor + max(top, TALLEST), top + SPARE_RISE, lower):
+            phase = rise_home((x, y, z), stacks, height, tool)
+            try:
+                return self._solve([phase], floor, arm, fingers, begin=begin, opening=not held)
+            except InfeasibleError as error:
+                failure = error
+        raise failure
 
     def _solve(
         self,
@@ -160,8 +218,9 @@ class MotionPlanner:
         floor: float,
         arm: Array,
         fingers: Array,
-        cancelled: Callable[[], bool],
-        begin: float,
+        cancelled: Callable[[], bool] = lambda: False,
+        begin: float = 0.0,
+        opening: bool = True,
     ) -> Motion:
         def check() -> None:
             if cancelled():
@@ -178,7 +237,6 @@ class MotionPlanner:
             check()
             paths += problem.solve([phase], [start, goal], clear)
         check()
-        trajectory = time_paths(
-            paths, self.limits, self.timing, fingers, self.arm.gripper.finger_travel
-        )
+        first = self.arm.gripper.finger_travel if opening else None
+        trajectory = time_paths(paths, self.limits, self.timing, fingers, first)
         return Motion(tuple(phases), tuple(paths), trajectory, floor, time.perf_counter() - begin)

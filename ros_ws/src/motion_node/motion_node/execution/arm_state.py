@@ -4,15 +4,17 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Final, Protocol
 
 from ..robots.joints import JointValues
+from .lived_time import LivedTime
 
 #: Joints that move by less than this between two looks rest [rad or m].
 REST_TOLERANCE = 2e-3
+#: Whoever waits looks at the clock this often, so that it counts what is really waited [s].
+_SLICE: Final = 0.2
 
 
 @dataclass(frozen=True)
@@ -35,14 +37,25 @@ class ArmState:
 class ArmStates(Protocol):
     """Where the states of an arm can be had."""
 
+    @property
+    def closed(self) -> bool:
+        """Whether nobody shall wait any more: the node ends."""
+
+    @property
+    def problem(self) -> str:
+        """What is wrong with the joint states that arrive and cannot be used; empty: nothing."""
+
     def now(self) -> float:
-        """This machine's time, which never goes back [s]."""
+        """This process's time, which never goes back; see :class:`LivedTime` [s]."""
 
     def newest(self) -> ArmState | None:
         """The newest state, however old; None if there has been none."""
 
     def wait(self, after: ArmState | None, timeout: float) -> ArmState | None:
-        """The first state that differs from ``after``, or None after ``timeout`` seconds."""
+        """The first state that differs from ``after``, or None after ``timeout`` seconds.
+
+        None at once if ``closed``.
+        """
 
 
 class ArmStateBox:
@@ -52,12 +65,24 @@ class ArmStateBox:
         clock: gives :meth:`now`.
     """
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self._clock = clock
+    def __init__(self, clock: Callable[[], float] | None = None) -> None:
+        self._clock = clock or LivedTime()
         self._changed = threading.Condition()
         self._newest: ArmState | None = None
         self._rest_positions: JointValues | None = None
         self._rest_since = 0.0
+        self._problem = ""
+        self._closed = False
+
+    @property
+    def closed(self) -> bool:
+        """See :class:`ArmStates`."""
+        return self._closed
+
+    @property
+    def problem(self) -> str:
+        """See :class:`ArmStates`."""
+        return self._problem
 
     def now(self) -> float:
         """See :class:`ArmStates`."""
@@ -73,6 +98,17 @@ class ArmStateBox:
                 self._rest_positions, self._rest_since = positions, stamp
             resting = stamp - self._rest_since
             self._newest = ArmState(stamp, self.now(), positions, resting)
+            self._problem = ""
+            self._changed.notify_all()
+
+    def refuse(self, problem: str) -> None:
+        """Something arrived that is no measurement; ``problem`` says why."""
+        self._problem = problem
+
+    def close(self) -> None:
+        """Wakes all who wait; nobody waits any more."""
+        with self._changed:
+            self._closed = True
             self._changed.notify_all()
 
     def newest(self) -> ArmState | None:
@@ -82,6 +118,11 @@ class ArmStateBox:
 
     def wait(self, after: ArmState | None, timeout: float) -> ArmState | None:
         """See :class:`ArmStates`."""
+        end = self.now() + timeout
         with self._changed:
-            self._changed.wait_for(lambda: self._newest is not after, timeout)
-            return None if self._newest is after else self._newest
+            while self._newest is after and not self._closed:
+                left = end - self.now()
+                if left <= 0.0:
+                    break
+                self._changed.wait(min(left, _SLICE))
+            return None if self._newest is after or self._closed else self._newest

@@ -8,45 +8,28 @@ on the way ends in a report; all waits have time limits.
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any, Final
 
-import numpy as np
-from numpy.typing import NDArray
-from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
-
-from scene_graph import Move, SceneGraph
+from tamp_runtime.motion_report import SOMETHING, MotionReason, MotionReport, MotionState
 
 from ..errors import CancelledError, InfeasibleError, InvalidPlanError
 from ..phases import HOME, PICK
 from ..planner import Motion
 from ..timing.trajectory import Trajectory
 from .arm_state import ArmStates
-from .follow import ExecutionError, ExecutionSettings, Follower
+from .condition import REST_SECONDS, Condition
+from .errors import ClosedError, ExecutionError
+from .follow import Follower
+from .plan import Plan, Planner
+from .recovery import Recovered, Recovery
+from .settings import ExecutionSettings
 
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Plan:
-    """A symbolic plan as the executive needs it."""
-
-    plan_id: str
-    graph: SceneGraph
-    moves: tuple[Move, ...]
-    object_names: tuple[str, ...]
-
-
-class Planner(Protocol):
-    """What plans motions; see :class:`motion_node.planner.MotionPlanner`."""
-
-    @property
-    def solve(self) -> Callable[..., Motion]:
-        """Plans the motion that carries out moves in a scene, and goes home."""
-
-    def solve_way_home(self, motion: Motion, moves_done: int, arm: Array, fingers: Array) -> Motion:
-        """The way home of an empty hand in the middle of a plan."""
+#: How long an arm that has arrived may take to come to rest before that is said [s].
+_SETTLING_SECONDS: Final = 3.0
 
 
 class Executive:
@@ -55,21 +38,28 @@ class Executive:
     Args:
         planner: the planner if there is one yet; it needs the robot description.
         arm: where the arm's states arrive.
-        send: publishes a trajectory, which replaces the running one.
+        follower: makes the arm follow trajectories.
+        condition: tells how the arm is.
         settings: asked for anew for each plan.
+        conflict: why nothing may set out: somebody else does the same; empty: it may.
     """
 
     def __init__(
         self,
         planner: Callable[[], Planner | None],
         arm: ArmStates,
-        send: Callable[[Trajectory], None],
+        follower: Follower,
+        condition: Condition,
         settings: Callable[[], ExecutionSettings],
+        conflict: Callable[[], str] = lambda: "",
     ) -> None:
-        self._planner = planner
-        self._arm, self._send, self._settings = arm, send, settings
+        self._planner, self._arm, self._settings = planner, arm, settings
+        self._follower, self._condition, self._conflict = follower, condition, conflict
         self._publish: Callable[[MotionReport], None] = lambda _report: None
         self._report = MotionReport()
+        self._motion: Motion | None = None
+        self._before = ""
+        follower.on_waiting = self._tell_waiting
 
     @property
     def report(self) -> MotionReport:
@@ -79,7 +69,9 @@ class Executive:
     def carry_out(
         self, plan: Plan, stop: threading.Event, publish: Callable[[MotionReport], None]
     ) -> None:
-        """Carries out a plan; when it returns, its end has been published.
+        """Carries out a plan; when it returns, its end has been published, or the node ends.
+
+        A plan without moves brings the arm home from wherever it is, see :meth:`_tidy`.
 
         Args:
             stop: set from another thread to end early, as SymbolicPlan describes.
@@ -90,9 +82,16 @@ class Executive:
         """
         self._publish = publish
         self._report = MotionReport(plan.plan_id, moves_total=len(plan.moves))
-        self._tell(MotionState.OPTIMISING, f"optimising {len(plan.moves)} moves")
+        self._follower.settings = self._settings()
         try:
-            self._plan_and_run(plan, stop)
+            if plan.moves:
+                self._tell(MotionState.OPTIMISING, f"optimising {len(plan.moves)} moves")
+                self._plan_and_run(plan, stop)
+            else:
+                self._tell(MotionState.EXECUTING, "looking how the arm is")
+                self._tidy()
+        except ClosedError:
+            return
         except CancelledError as error:
             self._tell(MotionState.CANCELLED, str(error))
         except InvalidPlanError as error:
@@ -122,10 +121,11 @@ class Executive:
             raise
 
     def _plan_and_run(self, plan: Plan, stop: threading.Event) -> None:
-        settings = self._settings()
-        follower = Follower(self._arm, self._send, settings)
-        planner = self._wait_for_planner(settings.description_timeout, stop)
-        state = follower.wait_for_rest(stop.is_set)
+        planner = self._wait_for_planner(stop.is_set)
+        state = self._follower.wait_for_rest(stop.is_set)
+        if state is not None and self._condition.held(state):
+            self._empty_hand(planner)
+            state = self._follower.wait_for_rest(stop.is_set)
         if state is None:
             raise CancelledError("stopped on request before anything moved")
         motion = planner.solve(
@@ -134,36 +134,44 @@ class Executive:
             state.positions.arm,
             state.positions.fingers,
             plan.object_names,
-            stop.is_set,
+            lambda: stop.is_set() or self._arm.closed,
         )
+        if self._arm.closed:
+            raise ClosedError("the node ends")
+        self._check_conflict()
+        self._motion = motion
         self._tell(
             MotionState.EXECUTING,
             "setting out",
             optimisation_seconds=motion.seconds,
             duration=motion.trajectory.duration,
         )
-        self._run(motion, planner, follower, stop)
+        self._run(motion, planner, stop)
 
-    def _wait_for_planner(self, seconds: float, stop: threading.Event) -> Planner:
-        deadline = self._arm.now() + seconds
+    def _wait_for_planner(self, stopped: Callable[[], bool] = lambda: False) -> Planner:
+        timeout = self._follower.settings.description_timeout
+        deadline = self._arm.now() + timeout
         while (planner := self._planner()) is None:
-            if stop.wait(0.05):
+            if self._arm.closed:
+                raise ClosedError("the node ends")
+            if stopped():
                 raise CancelledError("stopped on request before anything moved")
             if self._arm.now() > deadline:
                 raise ExecutionError(
                     MotionReason.NO_JOINT_STATES,
-                    "no usable robot_description arrives; is the arm's driver (or sim_node) "
-                    "running?",
+                    f"no usable robot_description within {timeout:g} s; is the arm's driver (or "
+                    "sim_node) running?",
                 )
+            time.sleep(0.05)
         return planner
 
-    def _run(
-        self,
-        motion: Motion,
-        planner: Planner,
-        follower: Follower,
-        stop: threading.Event,
-    ) -> None:
+    def _check_conflict(self) -> None:
+        sentence = self._conflict()
+        if sentence:
+            raise ExecutionError(MotionReason.CONFLICT, sentence)
+
+    def _run(self, motion: Motion, planner: Planner, stop: threading.Event) -> None:
+        follower = self._follower
         try:
             arrived = follower.follow(
                 motion.trajectory,
@@ -174,14 +182,13 @@ class Executive:
             if not error.recoverable:
                 raise
             try:
-                self._go_home(motion, planner, follower, str(error))
-            except (ExecutionError, InfeasibleError) as second:
-                raise ExecutionError(
-                    error.reason, f"{error}; the arm could not go home: {second}"
-                ) from error
-            raise ExecutionError(error.reason, f"{error}; the arm is home") from error
+                recovered = self._recover(motion, planner, str(error))
+            except ExecutionError as second:
+                raise ExecutionError(error.reason, f"{error}; {second}") from error
+            raise ExecutionError(error.reason, f"{error}; {recovered.sentence}") from error
+        total = self._report.moves_total
         if arrived:
-            total = self._report.moves_total
+            self._settle()
             self._tell(
                 MotionState.SUCCEEDED,
                 "every move was carried out and the arm is home",
@@ -189,29 +196,88 @@ class Executive:
                 progress=1.0,
             )
             return
-        self._go_home(motion, planner, follower, "stopped on request")
-        done, total = self._report.moves_done, self._report.moves_total
-        self._tell(
-            MotionState.CANCELLED,
-            f"stopped on request after {done} of {total} moves; the arm is home",
+        recovered = self._recover(motion, planner, "stopped on request")
+        sentence = (
+            f"stopped on request after {self._report.moves_done} of {total} moves; "
+            f"{recovered.sentence}"
         )
+        if recovered.held:
+            raise ExecutionError(MotionReason.GRASP_LOST, sentence)
+        self._tell(MotionState.CANCELLED, sentence)
 
-    def _go_home(self, motion: Motion, planner: Planner, follower: Follower, why: str) -> None:
-        """Brakes, opens the fingers, rises, and goes home."""
-        phase = follower.interval.phase
-        moves_done = phase.move + 1 if follower.let_go else phase.move
+    def _recover(self, motion: Motion, planner: Planner, why: str) -> Recovered:
+        """Brings the arm home in the middle of a plan."""
+        follower = self._follower
         self._tell(
             MotionState.EXECUTING,
             f"{why}; going home",
-            moves_done=moves_done,
+            moves_done=follower.moves_done,
             phase=HOME,
             object_name="",
         )
-        state = follower.brake()
-        home = planner.solve_way_home(
-            motion, moves_done, state.positions.arm, state.positions.fingers
+        if follower.under_way:
+            try:
+                follower.brake()
+            except ExecutionError as error:
+                if not error.recoverable:
+                    raise
+        return self._bring_home(motion, planner, f"{why}; ", in_order=True)
+
+    def _tidy(self) -> None:
+        """Brings an arm home that no plan moves: it was left somewhere, or holds something."""
+        planner = self._wait_for_planner()
+        self._follower.wait_for_rest()
+        self._check_conflict()
+        recovered = self._bring_home(self._motion, planner, "", in_order=False)
+        if recovered.held:
+            raise ExecutionError(MotionReason.GRASP_LOST, recovered.sentence)
+        self._tell(MotionState.CANCELLED, recovered.sentence)
+
+    def _empty_hand(self, planner: Planner) -> None:
+        """A plan starts with an empty hand; returns if it is empty after all.
+
+        Raises:
+            ExecutionError: if something was held, whether it could be put down or not.
+        """
+        held = self._condition.held()
+        self._check_conflict()
+        recovered = self._bring_home(self._motion, planner, "", in_order=False)
+        if recovered.held:
+            raise ExecutionError(MotionReason.GRASP_LOST, recovered.sentence)
+        if held != SOMETHING:
+            raise ExecutionError(
+                MotionReason.TRACKING_LOST,
+                f"the hand held {held} when the plan came; {recovered.sentence}; look again",
+            )
+
+    def _bring_home(
+        self, motion: Motion | None, planner: Planner, prefix: str, in_order: bool
+    ) -> Recovered:
+        def tell(sentence: str, kind: str, block: str) -> None:
+            message = f"{prefix}{sentence}"
+            self._tell(MotionState.EXECUTING, message, phase=kind, object_name=block)
+
+        recovery = Recovery(
+            self._follower,
+            planner,
+            self._condition,
+            motion,
+            self._follower.moves_done,
+            in_order,
+            tell,
         )
-        follower.follow(home.trajectory)
+        try:
+            recovered = recovery.bring_home()
+        finally:
+            if in_order:
+                self._report = replace(self._report, moves_done=recovery.moves_done)
+        self._settle()
+        return recovered
+
+    def _settle(self) -> None:
+        """Waits until the arm is seen to rest, so that the end of the plan can say so."""
+        with suppress(ExecutionError):
+            self._follower.wait_for_rest(seconds=REST_SECONDS, within=_SETTLING_SECONDS)
 
     # Reports
 
@@ -221,6 +287,13 @@ class Executive:
 
     def _fail(self, reason: MotionReason, message: str, **changes: Any) -> None:
         self._tell(MotionState.FAILED, message, reason=reason, **changes)
+
+    def _tell_waiting(self, sentence: str) -> None:
+        """Something has been awaited for a while, or no more if there is no sentence."""
+        if sentence:
+            self._before = self._report.message
+        message = f"{self._before}; {sentence}" if sentence else self._before
+        self._tell(self._report.state, message)
 
     def _tell_progress(self, trajectory: Trajectory, at: float) -> None:
         phase = trajectory.interval_at(at).phase

@@ -4,61 +4,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import replace
+from typing import Final
 
 import numpy as np
 from tamp_runtime.motion_report import MotionReason
 
-from ..errors import MotionError
+from ..phases import HOME, Phase, Tool
 from ..robots.joints import JointValues
 from ..timing.trajectory import Interval, Trajectory
 from .arm_state import ArmState, ArmStates
-from .monitor import Monitor, MonitorSettings, Verdict
+from .condition import Grip
+from .errors import ExecutionError
+from .monitor import Monitor, Verdict
+from .objections import objection
+from .patience import Patience
+from .settings import ExecutionSettings
 
-
-@dataclass(frozen=True)
-class ExecutionSettings:
-    """Time limits, in wall time unless said otherwise [s].
-
-    Attributes:
-        joint_state_timeout: silence of the joint states that is taken for their end.
-        description_timeout: for the robot description to arrive.
-        rest_timeout: for the arm to come to rest before a plan is taken up.
-        rest_seconds: standing still for this long counts as rest, by the joint states' stamps.
-        clock_timeout: joint states whose stamps stand still for this long.
-        execution_factor: of the trajectory's duration, plus 30 s, as the limit of an execution.
-        brake_seconds: in which a moving arm comes to rest.
-    """
-
-    joint_state_timeout: float = 3.0
-    description_timeout: float = 10.0
-    rest_timeout: float = 60.0
-    rest_seconds: float = 0.8
-    clock_timeout: float = 5.0
-    execution_factor: float = 20.0
-    brake_seconds: float = 0.4
-    monitor: MonitorSettings = field(default_factory=MonitorSettings)
-
-
-class ExecutionError(MotionError):
-    """The execution ends here; ``reason`` is what is reported.
-
-    ``recoverable``: the arm obeys, so it can be sent home.
-    """
-
-    def __init__(self, reason: MotionReason, message: str, recoverable: bool = False) -> None:
-        super().__init__(message)
-        self.reason = reason
-        self.recoverable = recoverable
-
-
-_SENTENCES = {
-    Verdict.NOT_STARTED: "the arm does not start; its controller may have refused the trajectory",
-    Verdict.OFF_THE_PATH: "the arm has left its path; something may hold it",
-    Verdict.BEHIND: "the arm falls behind its trajectory; something may hold it",
-    Verdict.NOT_ARRIVED: "the arm does not reach the end of its trajectory",
-    Verdict.CLOCK_WENT_BACK: "the joint states' time went back; was the simulator restarted?",
-}
+#: A state older than this does not tell where the arm is now [s].
+_FRESH_SECONDS: Final = 1.0
+#: What an arm does that has not been given a trajectory.
+_NOTHING: Final = Phase(HOME, 0, "", None, None, Tool(0.0, 0.0, 0.0), (), 0.0)
 
 
 class Follower:
@@ -67,19 +33,33 @@ class Follower:
     Args:
         arm: where the arm's states arrive.
         send: publishes a trajectory, which replaces the running one.
+
+    Attributes:
+        settings: may be changed between trajectories.
+        on_waiting: told a sentence when something has been awaited for a while, and an empty one
+            when it is there.
+        grip: what is known of the hand; any thread may read it.
+        under_way: whether the arm moves along a trajectory that can be braked.
+        let_go_of: the block that the running trajectory has put down last; empty: none.
+        moves_done: of the motion that the running trajectory belongs to.
     """
 
     #: How far ahead of the arm a replacement for a running trajectory starts [s].
     LEAD = 0.03
     #: How far an arm joint may be from a trajectory's first point when it is sent [rad].
     START_TOLERANCE = 0.05
+    #: An arm that went on unseen and is found this near to a path is on it [rad].
+    ON_THE_PATH = 0.05
 
     def __init__(
         self, arm: ArmStates, send: Callable[[Trajectory], None], settings: ExecutionSettings
     ) -> None:
         self._arm, self._send = arm, send
         self.settings = settings
+        self.on_waiting: Callable[[str], None] = lambda _sentence: None
+        self.grip = Grip()
         self._trajectory: Trajectory | None = None
+        self.under_way, self.let_go_of, self.moves_done = False, "", 0
         self.time = 0.0
 
     @property
@@ -101,52 +81,64 @@ class Follower:
         """Whether the hand holds nothing; fingers that only begin to close hold nothing yet."""
         return not self.interval.phase.tool.held or self.let_go
 
-    def next_state(self, after: ArmState | None) -> ArmState:
-        """Waits for news of the arm.
-
-        Raises:
-            ExecutionError: if joint states stay out.
-        """
-        state = self._arm.wait(after, self.settings.joint_state_timeout)
-        if state is None:
-            raise self._silence()
-        return state
-
-    def _silence(self) -> ExecutionError:
-        return ExecutionError(
-            MotionReason.NO_JOINT_STATES,
-            f"no joint_states for {self.settings.joint_state_timeout:g} s; is the arm's driver (or "
-            "sim_node) running?",
-        )
-
-    def wait_for_rest(self, stopped: Callable[[], bool]) -> ArmState | None:
+    def wait_for_rest(
+        self,
+        stopped: Callable[[], bool] = lambda: False,
+        seconds: float | None = None,
+        within: float | None = None,
+    ) -> ArmState | None:
         """The newest state as soon as the arm stands still; None if ``stopped`` says so.
 
         Only an arm at rest can start a trajectory: another one may still be under way, sent by
         this node before it was restarted.
 
+        Args:
+            seconds: for how long it has to stand still; the settings' rest_seconds if not given.
+            within: how long to wait for it; the settings' rest_timeout if not given [s].
+
         Raises:
             ExecutionError: if it does not come to rest, or joint states stay out.
         """
-        deadline = self._arm.now() + self.settings.rest_timeout
-        heard = self._arm.now()
-        state = self._arm.newest()
-        fresh = state is not None and heard - state.received < self.settings.joint_state_timeout
+        rest = self.settings.rest_seconds if seconds is None else seconds
+        deadline = self._arm.now() + (self.settings.rest_timeout if within is None else within)
+        patience, state, last = self._patience(), self._newest_if_fresh(), self._arm.newest()
         while not stopped():
-            if state is not None and fresh and state.resting >= self.settings.rest_seconds:
-                return state
-            now = self._arm.now()
-            if now > deadline:
+            if state is not None and state.resting >= rest:
+                return self._settled(state)
+            if self._arm.now() > deadline:
                 raise ExecutionError(
                     MotionReason.TIMEOUT,
                     "the arm does not come to rest, so no trajectory can start",
                 )
-            news = self._arm.wait(state, 0.1)
-            if news is not None:
-                state, heard, fresh = news, now, True
-            elif now - heard > self.settings.joint_state_timeout:
-                raise self._silence()
+            if (news := patience.next_state(last)) is not None:
+                state = last = news
         return None
+
+    def _patience(self) -> Patience:
+        timeout = self.settings.joint_state_timeout
+        return Patience(self._arm, timeout, lambda sentence: self.on_waiting(sentence))
+
+    def _newest_if_fresh(self) -> ArmState | None:
+        state = self._arm.newest()
+        if state is None or self._arm.now() - state.received > _FRESH_SECONDS:
+            return None
+        return state
+
+    def _settled(self, state: ArmState) -> ArmState:
+        """At rest again after it went on unseen: what it holds by now, where it stands tells.
+
+        A trajectory that went on may have put one block down and taken another.
+        """
+        grip, trajectory = self.grip, self._trajectory
+        if grip.doubtful and trajectory is not None:
+            near = set()
+            for interval in trajectory.intervals:
+                path, _ = trajectory.sample(np.arange(interval.start, interval.end, Monitor.STEP))
+                if interval.holding and path.furthest(state.positions)[0].min() < self.ON_THE_PATH:
+                    near.add((interval.phase.tool.held, interval.phase.move))
+            held, move = near.pop() if len(near) == 1 else ("", -1)
+            self.grip = replace(grip, held=held, move=move, sent=None, doubtful=False)
+        return state
 
     def follow(
         self,
@@ -164,44 +156,67 @@ class Follower:
         Raises:
             ExecutionError: if it does not go as it should.
         """
-        begin = moving = self._arm.now()
         limit = self.settings.execution_factor * trajectory.duration + 30.0
+        patience = self._patience()
         # Not the state from which the motion was optimised: that took a while.
-        state = self._arm.newest()
-        assert state is not None, "a trajectory starts from a state"
+        state = self._newest_if_fresh() or patience.wait(self._arm.newest())
         away, _ = state.positions.furthest(trajectory.positions[0])
         if away > self.START_TOLERANCE:
             raise ExecutionError(
                 MotionReason.TRACKING_LOST,
                 "the arm has moved while its motion was optimised; let it rest, and ask again",
+                recoverable=True,
             )
         monitor = Monitor(trajectory, state, self.settings.monitor)
-        self._trajectory, self.time = trajectory, 0.0
+        begin, self._trajectory, self.time = self._arm.now(), trajectory, 0.0
+        self.under_way, self.let_go_of = True, ""
         self._send(trajectory)
-        while True:
-            previous, state = state, self.next_state(state)
-            verdict = monitor.update(state)
-            self.time = monitor.time
-            on_progress(trajectory, monitor.time)
-            if verdict is Verdict.ARRIVED:
-                return True
-            if verdict is not Verdict.GOING:
-                self._object(verdict, state)
-            # An arm that has not started may not have the trajectory yet, and rest before it.
-            if monitor.started and stopped():
-                return False
-            now = self._arm.now()
-            moving = now if state.stamp > previous.stamp else moving
-            if now - moving > self.settings.clock_timeout:
-                raise ExecutionError(
-                    MotionReason.TIMEOUT,
-                    "the joint states' time stands still; is the clock running?",
-                )
-            if now - begin > limit:
-                raise ExecutionError(
-                    MotionReason.TIMEOUT,
-                    f"the execution takes longer than {limit:.0f} s; is the clock running?",
-                )
+        try:
+            while True:
+                state = patience.wait(state)
+                verdict = monitor.update(state)
+                self.time = monitor.time
+                self._note_grip()
+                on_progress(trajectory, monitor.time)
+                if verdict is Verdict.ARRIVED:
+                    self.under_way = False
+                    return True
+                if verdict is not Verdict.GOING:
+                    self._object(verdict, monitor, state)
+                # An arm that has not started may not have the trajectory yet, and rest before it.
+                if monitor.started and stopped():
+                    return False
+                if self._arm.now() - begin > limit:
+                    raise ExecutionError(
+                        MotionReason.TIMEOUT,
+                        f"the execution takes longer than {limit:.0f} s; is the clock running?",
+                    )
+        except ExecutionError as error:
+            if not error.recoverable:
+                error = self._unseen(error)
+            raise error
+        finally:
+            self.grip = replace(self.grip, known=False)
+
+    def _unseen(self, error: ExecutionError) -> ExecutionError:
+        """The same error, with what the arm does that is not watched any more."""
+        assert self._trajectory is not None
+        self.grip = replace(self.grip, doubtful=bool(self.grip.held))
+        self.under_way = False
+        end = self._trajectory.intervals[-1].phase
+        where = ", which ends at home" if end.kind == HOME else ""
+        return ExecutionError(error.reason, f"{error} The arm goes on along its trajectory{where}")
+
+    def _note_grip(self) -> None:
+        assert self._trajectory is not None
+        phase = self.interval.phase
+        held = "" if self.empty_handed else phase.tool.held
+        if self.grip.held and not held:
+            self.let_go_of = self.grip.held
+        self.moves_done = phase.move + 1 if self.let_go else phase.move
+        move = self.grip.move if phase.kind == HOME else phase.move
+        sent = float(np.mean(self._trajectory.sample(self.time)[0].fingers))
+        self.grip = Grip(held, move if held else -1, sent, known=True)
 
     def brake(self) -> ArmState:
         """Comes to rest along the running trajectory; returns the arm's state then.
@@ -212,44 +227,65 @@ class Follower:
         assert self._trajectory is not None
         begin = min(self.time + self.LEAD, self._trajectory.duration)
         self._trajectory = self._trajectory.brake(begin, self.settings.brake_seconds)
-        self.time = 0.0
+        self.under_way, self.time = False, 0.0
         self._send(self._trajectory)
-        first = state = self.next_state(None)
-        deadline = self._arm.now() + self.settings.brake_seconds + 5.0
+        patience = self._patience()
+        first = state = patience.wait(self._arm.newest())
         while min(state.resting, state.stamp - first.stamp) < 0.15:
-            if self._arm.now() > deadline:
+            if state.stamp - first.stamp > self.settings.brake_seconds + 5.0:
                 raise ExecutionError(
-                    MotionReason.TRACKING_LOST, "the arm does not stop when asked to"
+                    MotionReason.TRACKING_LOST,
+                    "the arm does not stop when asked to",
+                    recoverable=True,
                 )
-            state = self.next_state(state)
+            state = patience.wait(state)
         return state
 
-    def _object(self, verdict: Verdict, state: ArmState) -> None:
-        phase = self.interval.phase
-        if verdict is Verdict.GRASP_LOST:
-            raise ExecutionError(
-                MotionReason.GRASP_LOST,
-                f"the fingers closed on nothing or lost {phase.object_name}",
-                recoverable=True,
-            )
-        self._hold(state)
-        while_doing = f"{phase.kind} of {phase.object_name}" if phase.object_name else "way home"
-        raise ExecutionError(
-            MotionReason.TRACKING_LOST,
-            f"{_SENTENCES[verdict]} ({while_doing})",
-            recoverable=verdict in (Verdict.OFF_THE_PATH, Verdict.BEHIND) and self.empty_handed,
-        )
+    def feel(self, state: ArmState, by: float = 0.006) -> bool:
+        """Whether something resists when the fingers close a little more; then it presses on.
+
+        Args:
+            state: of the arm at rest.
+            by: how far each finger is sent [m].
+
+        Raises:
+            ExecutionError: if joint states stay out.
+        """
+        now = state.positions
+        goal = np.maximum(now.fingers - by, 0.0)
+        self._stand(JointValues(np.tile(now.arm, (2, 1)), np.vstack([now.fingers, goal])))
+        patience, begin = self._patience(), state.stamp
+        while min(state.resting, state.stamp - begin - 0.5) < 0.2:
+            state = patience.wait(state)
+            if state.stamp - begin > 3.0:
+                break
+        moved = float(np.mean(now.fingers - state.positions.fingers))
+        return moved < float(np.mean(now.fingers - goal)) / 2
+
+    def _object(self, verdict: Verdict, monitor: Monitor, state: ArmState) -> None:
+        if verdict is Verdict.NOT_OPENED and monitor.block is not None:
+            block = monitor.block
+            self.grip = replace(self.grip, held=block.object_name, move=block.move)
+            self.let_go_of, self.moves_done = "", block.move
+        elif verdict in (Verdict.GRASP_LOST, Verdict.NOT_CLOSED):
+            self.grip = replace(self.grip, held="", move=-1)
+        error = objection(verdict, self.interval.phase, monitor.block, state)
+        if error.reason is MotionReason.TRACKING_LOST:
+            self._hold(state)
+        raise error
 
     def _hold(self, state: ArmState) -> None:
         """Stays where the arm is; fingers that press go on pressing."""
         assert self._trajectory is not None
         pressing = self._trajectory.sample(self.time)[0].fingers
         arm, fingers = np.tile(state.positions.arm, (2, 1)), np.tile(pressing, (2, 1))
-        hold = Trajectory(
-            np.array([0.0, 0.5]),
-            JointValues(arm, fingers),
-            JointValues(np.zeros_like(arm), np.zeros_like(fingers)),
-            (Interval(0.0, 0.5, self.interval.phase, self.interval.gripping),),
-        )
-        self._trajectory, self.time = hold, 0.0
-        self._send(hold)
+        self._stand(JointValues(arm, fingers))
+
+    def _stand(self, positions: JointValues) -> None:
+        """The arm stands for half a second, while its fingers go from here to there."""
+        interval = Interval(0.0, 0.5, self.interval.phase if self._trajectory else _NOTHING, True)
+        still = JointValues(np.zeros_like(positions.arm), np.zeros_like(positions.fingers))
+        stand = Trajectory(np.array([0.0, 0.5]), positions, still, (interval,))
+        self._trajectory, self.under_way, self.time = stand, False, 0.0
+        self.grip = replace(self.grip, sent=float(np.mean(positions.fingers[-1])))
+        self._send(stand)

@@ -15,8 +15,9 @@ from enum import Enum, auto
 import numpy as np
 from numpy.typing import NDArray
 
+from ..phases import PLACE, Phase
 from ..robots.joints import JointValues
-from ..timing.trajectory import Trajectory
+from ..timing.trajectory import Interval, Trajectory
 from .arm_state import ArmState
 
 Array = NDArray[np.float64]
@@ -32,6 +33,8 @@ class Verdict(Enum):
     BEHIND = auto()
     NOT_ARRIVED = auto()
     GRASP_LOST = auto()
+    NOT_CLOSED = auto()
+    NOT_OPENED = auto()
     CLOCK_WENT_BACK = auto()
 
 
@@ -48,6 +51,7 @@ class MonitorSettings:
         settle_seconds: within which the end is to be reached after the trajectory's end [s].
         grasp_tolerance: a finger this near to where it was sent holds nothing [m].
         grasp_seconds: for how long the fingers must say so [s].
+        finger_seconds: for how long they must stand wider, or narrower, than they should [s].
     """
 
     tracking_tolerance: float = 0.15
@@ -58,22 +62,61 @@ class MonitorSettings:
     settle_seconds: float = 3.0
     grasp_tolerance: float = 0.002
     grasp_seconds: float = 0.1
+    finger_seconds: float = 0.3
 
 
 class _Lasting:
-    """Whether a condition has been true for some time [s]."""
+    """Whether a condition has been true for some time [s]; silence counts as a moment."""
+
+    #: The most that passes from one joint state to the next [s].
+    LONGEST_STEP = 0.1
 
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
-        self._since: float | None = None
+        self._last: float | None = None
+        self._for = 0.0
 
     def lasts(self, condition: bool, stamp: float) -> bool:
         if not condition:
-            self._since = None
+            self._last, self._for = None, 0.0
             return False
-        if self._since is None:
-            self._since = stamp
-        return stamp - self._since >= self._seconds
+        if self._last is not None:
+            self._for += min(max(0.0, stamp - self._last), self.LONGEST_STEP)
+        self._last = stamp
+        return self._for >= self._seconds - 1e-9
+
+
+@dataclass(frozen=True)
+class _Travel:
+    """A stretch on which the arm moves, and how far its fingers should be apart.
+
+    Attributes:
+        ends: where it begins and ends, shape (2, n) [rad].
+        block: the phase whose block the fingers hold, or have just let go; None: neither.
+        middle: half way between the block's half width and fully open fingers [m].
+    """
+
+    ends: Array
+    block: Phase | None
+    middle: float
+
+
+def _travels(trajectory: Trajectory) -> dict[Interval, _Travel]:
+    """Of the stretches of a trajectory on which the arm moves."""
+    result: dict[Interval, _Travel] = {}
+    placed: Phase | None = None
+    for interval in trajectory.intervals:
+        phase = interval.phase
+        if interval.gripping:
+            placed = phase if phase.kind == PLACE else None
+            continue
+        block = phase if phase.kind == PLACE and interval.holding else placed
+        middle = 0.0
+        if block is not None and block.grasp is not None:
+            middle = (block.grasp.width / 2 + block.grip) / 2
+        ends = trajectory.sample(np.array([interval.start, interval.end]))[0].arm
+        result[interval] = _Travel(ends, block if middle else None, middle)
+    return result
 
 
 class Monitor:
@@ -90,6 +133,8 @@ class Monitor:
     TIME_WEIGHT = 0.03
     #: Spacing of the times at which the arm is looked for when it has started [s].
     STEP = 0.02
+    #: An arm this far from both ends of a stretch is on its way for certain [rad].
+    ON_ITS_WAY = 0.05
 
     def __init__(self, trajectory: Trajectory, state: ArmState, settings: MonitorSettings) -> None:
         self.trajectory, self.settings = trajectory, settings
@@ -104,6 +149,15 @@ class Monitor:
         )
         self._off = _Lasting(settings.tracking_seconds)
         self._empty = _Lasting(settings.grasp_seconds)
+        self._not_closed = _Lasting(settings.finger_seconds)
+        self._not_opened = _Lasting(settings.finger_seconds)
+        self._travels = _travels(trajectory)
+
+    @property
+    def block(self) -> Phase | None:
+        """The place phase of the block that the fingers hold now, or have just let go."""
+        travel = self._travels.get(self.trajectory.interval_at(self.time))
+        return travel.block if travel else None
 
     @property
     def started(self) -> bool:
@@ -128,6 +182,11 @@ class Monitor:
             return Verdict.OFF_THE_PATH
         if self._empty.lasts(self._is_empty(state), state.stamp):
             return Verdict.GRASP_LOST
+        wrong = self._fingers_elsewhere(state)
+        if self._not_closed.lasts(wrong is Verdict.NOT_CLOSED, state.stamp):
+            return Verdict.NOT_CLOSED
+        if self._not_opened.lasts(wrong is Verdict.NOT_OPENED, state.stamp):
+            return Verdict.NOT_OPENED
         if self.lag > self.settings.max_lag:
             return Verdict.BEHIND
         over = elapsed - self.trajectory.duration
@@ -165,7 +224,8 @@ class Monitor:
         latest = state.stamp - self._anchor + 0.2
         low = max(0.0, self.time - 0.3)
         high = max(low, min(expected + 0.5, latest, self.trajectory.duration))
-        times = np.append(np.linspace(low, high, 41), np.clip(expected, low, high))
+        count = max(41, int(np.ceil((high - low) / self.STEP)) + 1)
+        times = np.append(np.linspace(low, high, count), np.clip(expected, low, high))
         return self._match(state, times, expected)
 
     def _match(self, state: ArmState, times: Array, expected: float) -> float:
@@ -183,3 +243,20 @@ class Monitor:
             return False
         fingers = float(np.mean(state.positions.fingers))
         return fingers <= interval.phase.tool.finger + self.settings.grasp_tolerance
+
+    def _fingers_elsewhere(self, state: ArmState) -> Verdict:
+        """NOT_CLOSED or NOT_OPENED if the fingers are nearer to where they were; else GOING.
+
+        Only while the arm is on its way for certain: at the ends of a stretch, where it stands
+        still, the time is a guess, and the fingers may be moving.
+        """
+        interval = self.trajectory.interval_at(self.time)
+        travel = self._travels.get(interval)
+        if travel is None or travel.block is None:
+            return Verdict.GOING
+        if np.abs(travel.ends - state.positions.arm).max(axis=1).min() < self.ON_ITS_WAY:
+            return Verdict.GOING
+        fingers = float(np.mean(state.positions.fingers))
+        if interval.holding:
+            return Verdict.NOT_CLOSED if fingers > travel.middle else Verdict.GOING
+        return Verdict.NOT_OPENED if fingers < travel.middle else Verdict.GOING

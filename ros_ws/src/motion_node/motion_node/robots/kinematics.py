@@ -38,6 +38,17 @@ class Joint:
     upper: float
     velocity: float
 
+    def moved(self, value: float) -> Array:
+        """Transform (4, 4) of the child link in the joint frame at a position [rad or m]."""
+        result = np.eye(4)
+        if self.kind == "prismatic":
+            result[:3, 3] = self.axis * value
+        else:
+            x, y, z = self.axis
+            cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+            result[:3, :3] += np.sin(value) * cross + (1 - np.cos(value)) * cross @ cross
+        return result
+
 
 def _numbers(text: str | None, default: str) -> Array:
     return np.array([float(value) for value in (text or default).split()])
@@ -178,6 +189,22 @@ class Kinematics:
             else:
                 rotation = rotation @ _rotation_about(joint.axis, value)
         return rotation, position
+
+    def pose_at(self, link: str, q: Array) -> Array:
+        """Transform (4, 4) of a link in the world, in numbers; any thread may ask.
+
+        Raises:
+            RobotDescriptionError: if the link does not exist.
+        """
+        self.check_links([link])
+        world_from_link = np.eye(4)
+        while (joint := self.by_child.get(link)) is not None:
+            parent_from_link = joint.parent_from_joint
+            if joint.name in self.position_in_q:
+                parent_from_link = parent_from_link @ joint.moved(q[self.position_in_q[joint.name]])
+            world_from_link = parent_from_link @ world_from_link
+            link = joint.parent
+        return world_from_link
 
     def pose_function(self, link: str) -> ca.Function:
         """CasADi function q (n,) -> (rotation (3, 3), position (3,)) of a link in the world."""

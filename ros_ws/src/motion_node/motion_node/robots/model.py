@@ -91,3 +91,8 @@ class ArmModel:
         """Tool centre point (3,) [m] and direction of the fingers about world z [rad]."""
         rows = np.array(self.hand(q)[0]).ravel()
         return rows[:POSITION_ROWS], float(np.arctan2(rows[-1], rows[-2]))
+
+    def tool_at(self, q: Array) -> Array:
+        """Tool centre point (3,) [m], without CasADi, so that any thread may ask."""
+        pose = self.kinematics.pose_at(self.arm.gripper.hand_link, q)
+        return np.asarray(pose[:3, 3] + pose[:3, 2] * self.arm.gripper.tcp_offset)

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the monitor finds wrong, in words."""
+
+from __future__ import annotations
+
+import numpy as np
+from tamp_runtime.motion_report import SOMETHING, MotionReason
+
+from ..phases import Phase
+from .arm_state import ArmState
+from .errors import ExecutionError
+from .monitor import Verdict
+
+_SENTENCES = {
+    Verdict.NOT_STARTED: "the arm does not start; its controller may have refused the trajectory",
+    Verdict.OFF_THE_PATH: "the arm has left its path; something may hold it",
+    Verdict.BEHIND: "the arm falls behind its trajectory; something may hold it",
+    Verdict.NOT_ARRIVED: "the arm does not reach the end of its trajectory",
+    Verdict.CLOCK_WENT_BACK: "the joint states' time went back; was the simulator restarted?",
+}
+
+
+def objection(
+    verdict: Verdict, phase: Phase, block: Phase | None, state: ArmState
+) -> ExecutionError:
+    """Why an execution ends.
+
+    Args:
+        phase: what the arm was doing.
+        block: the place phase of the block that the fingers hold, or have just let go.
+    """
+    apart = 2000 * float(np.mean(state.positions.fingers))
+    if verdict is Verdict.NOT_OPENED and block is not None:
+        sentence = (
+            f"the fingers did not open: they stand {apart:.0f} mm apart and still hold "
+            f"{block.object_name}; check the gripper"
+        )
+    elif verdict is Verdict.NOT_CLOSED and phase.grasp is not None:
+        sentence = (
+            f"the fingers did not close on {phase.tool.held}: they stand {apart:.0f} mm "
+            f"apart, the block is {1000 * phase.grasp.width:.0f} mm wide"
+        )
+    elif verdict is Verdict.GRASP_LOST:
+        held = "what they held" if phase.tool.held == SOMETHING else phase.tool.held
+        sentence = f"the fingers closed on nothing or lost {held}"
+    else:
+        doing = f"{phase.kind} of {phase.object_name}" if phase.object_name else "way home"
+        sentence = f"{_SENTENCES[verdict]} ({doing})"
+        return ExecutionError(MotionReason.TRACKING_LOST, sentence, recoverable=True)
+    return ExecutionError(MotionReason.GRASP_LOST, sentence, recoverable=True)

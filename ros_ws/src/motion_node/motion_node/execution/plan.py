@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A symbolic plan as the executive needs it, and what plans its motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from scene_graph import Move, SceneGraph
+
+from ..planner import Motion
+from .recovery import WaysHome
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A symbolic plan as the executive needs it."""
+
+    plan_id: str
+    graph: SceneGraph
+    moves: tuple[Move, ...]
+    object_names: tuple[str, ...]
+
+
+class Planner(WaysHome, Protocol):
+    """What plans motions; see :class:`motion_node.planner.MotionPlanner`."""
+
+    @property
+    def solve(self) -> Callable[..., Motion]:
+        """Plans the motion that carries out moves in a scene, and goes home."""
