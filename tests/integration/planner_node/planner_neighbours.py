@@ -155,8 +155,11 @@ class FakeMotion(Node):
             if plan.plan_id.startswith("home-"):
                 self._go_home(plan.plan_id)
             return
-        if plan.plan_id in {known.plan_id for known in self.plans}:
-            return
+        if plan.plan_id not in {known.plan_id for known in self.plans}:
+            self.take_up(plan)
+
+    def take_up(self, plan: SymbolicPlan) -> None:
+        """Treats a plan that is new."""
         self.plans.append(plan)
         behaviour = self.behaviours.pop(0) if self.behaviours else obey
         with self.busy:

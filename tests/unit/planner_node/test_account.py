@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Answers tell the state that they leave: why, what was done and seen, held, and where the arm is."""
+"""Answers tell the state that they leave: why, what was done, seen and held, where the arm is."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def test_an_answer_says_where_the_arm_is_at_the_time_of_the_answer() -> None:
 
 
 def test_what_a_silent_motion_node_said_of_the_arm_is_not_believed_for_ever() -> None:
-    def die(bench: LoopBench, plan: Plan) -> Iterator[MotionReport]:
+    def die(bench: LoopBench, _plan: Plan) -> Iterator[MotionReport]:
         yield MotionReport(state=MotionState.EXECUTING, arm=ArmPlace.HOME)
         bench.mute = True
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import pytest
 from loop_bench import REACHED, LoopBench, fail, obey, run_until_stopped, stay
@@ -174,7 +175,7 @@ def test_fault_1_taking_over_can_be_cancelled() -> None:
 
 
 def test_fault_1_a_plan_that_somebody_slipped_in_is_stopped_and_planned_for_anew() -> None:
-    def refuse(bench: LoopBench, plan: Plan) -> Iterator[MotionReport]:
+    def refuse(bench: LoopBench, _plan: Plan) -> Iterator[MotionReport]:
         yield MotionReport(plan_id="foreign", state=MotionState.EXECUTING)
         yield MotionReport(
             state=MotionState.FAILED, reason=MotionReason.BUSY, message="'foreign' is carried out"
@@ -194,7 +195,7 @@ def test_fault_3_an_arm_that_still_moves_after_a_failure_is_waited_for(place: Ar
     """Joint states stood still: FAILED was reported, but the arm follows its trajectory."""
     looked: list[float] = []
 
-    def fail_early(bench: LoopBench, plan: Plan) -> Iterator[MotionReport]:
+    def fail_early(bench: LoopBench, _plan: Plan) -> Iterator[MotionReport]:
         bench.arm = place
         rest = bench.clock.seconds + 9.0
 
@@ -256,6 +257,6 @@ def test_a_long_wait_is_told_of_about_once_a_second() -> None:
 
     bench.cancel_at = note
     bench.achieve()
-    gaps = [after - before for before, after in zip(times, times[1:])]
+    gaps = [after - before for before, after in pairwise(times)]
     assert max(gaps) <= 1.1
     assert len(times) < 30

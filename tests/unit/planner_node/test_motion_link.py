@@ -197,7 +197,9 @@ def test_fault_13_a_plan_that_a_talking_motion_node_passes_over_is_told_from_sil
 def test_fault_13_a_motion_node_that_is_not_heard_at_all_may_have_carried_the_plan_out() -> None:
     linked = Linked()
     linked.start()
-    with pytest.raises(MotionSilentError, match="no motion_status arrives.*nobody knows") as caught:
+    with pytest.raises(
+        MotionSilentError, match=r"no motion_status arrives.*nobody knows"
+    ) as caught:
         linked.follow()
     assert (caught.value.speaks, caught.value.untouched) == (False, False)
 

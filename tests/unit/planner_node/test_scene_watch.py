@@ -101,7 +101,7 @@ def test_fault_10_a_clock_that_stopped_with_its_simulator_makes_no_scene_young()
     watch.latest()
     clock.seconds += 2.1
     with pytest.raises(
-        NoSceneGraphError, match="nothing has arrived from perception for 7 s.*clock"
+        NoSceneGraphError, match=r"nothing has arrived from perception for 7 s.*clock"
     ):
         watch.latest()
 
