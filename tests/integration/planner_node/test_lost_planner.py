@@ -8,7 +8,7 @@ import sys
 from typing import Any
 
 import pytest
-from ros2_run import PROCESS_TIMEOUT, Process, Spawn
+from ros2_run import PROCESS_TIMEOUT, Process, Spawn, Start, finish
 
 from planner_node.cli.client import PlannerClient, PlannerUnavailableError
 
@@ -37,9 +37,11 @@ class Planner(Node):
 
     def work(self, goal):
         stopped = threading.Event()
+        print("at work", flush=True)
         while not goal.is_cancel_requested and self.context.ok():
             stopped.wait(0.05)
         if self.context.ok():
+            print("cancelled", flush=True)
             goal.canceled()
         return AchieveGoal.Result(status=AchieveGoal.Result.CANCELLED, message="arm at rest")
 
@@ -130,3 +132,34 @@ def test_a_planner_that_stands_still_for_a_while_is_waited_for(
     assert not client.is_done()
     client.cancel(PROCESS_TIMEOUT)
     assert client.result(PROCESS_TIMEOUT).message == "arm at rest"
+
+
+ENDS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
+
+
+@pytest.mark.parametrize("number", ENDS)
+def test_fault_1_however_the_command_line_client_is_ended_it_cancels_its_goal(
+    start_planner: Any, start: Start, number: signal.Signals
+) -> None:
+    planner = start_planner()
+    process = start("planner_node", "achieve_goal", "red on blue")
+    assert planner.stdout is not None
+    assert planner.stdout.readline() == "at work\n"
+    process.send_signal(number)
+    ended = finish(process)
+    assert ended.code == ENDS[number], ended
+    assert planner.stdout.readline() == "cancelled\n"
+
+
+def test_fault_1_ctrl_c_ends_the_command_line_client_of_a_dead_planner(
+    start_planner: Any, start: Start
+) -> None:
+    planner = start_planner()
+    process = start("planner_node", "achieve_goal", "red on blue")
+    assert planner.stdout is not None
+    assert planner.stdout.readline() == "at work\n"
+    planner.kill()
+    process.send_signal(signal.SIGINT)
+    ended = finish(process)
+    assert ended.code in (1, 130), ended
+    assert "planner_node" in ended.stderr

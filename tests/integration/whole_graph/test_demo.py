@@ -59,12 +59,28 @@ def left_over(marker: str) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("arguments", [["--blocks", "9"], ["--goal", "red over"], ["--seed", "-1"]])
-def test_the_demo_refuses_bad_arguments_before_it_starts_anything(
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--blocks", "9"],
+        ["--goal", "red over"],
+        ["--goal", "red on mauve"],
+        ["--goal", "box on box"],
+        ["--goal", "red on blue, green on red, pink on green", "--blocks", "3"],
+        ["--seed", "-1"],
+        ["--seed", "99999999999"],
+        ["--real-time-factor", "nan"],
+        ["--out", "/dev/null/runs"],
+        ["--out", "/proc"],
+    ],
+)
+def test_fault_17_the_demo_refuses_bad_arguments_before_it_starts_anything(
     arguments: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(sys, "argv", ["demo", *arguments])
     with pytest.raises(SystemExit) as refused:
         demo.main()
     assert refused.value.code == 2
-    assert arguments[0] in capsys.readouterr().err
+    usage, sentence = capsys.readouterr().err.rsplit("error: ", 1)
+    assert usage.startswith("usage:")
+    assert sentence.startswith(arguments[0]) and sentence.count("\n") == 1

@@ -11,10 +11,13 @@ from __future__ import annotations
 import argparse
 import io
 import json
+import math
 import sys
+import tempfile
 import time
 from datetime import datetime
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 import rclpy
@@ -30,15 +33,25 @@ from tqdm import tqdm
 from planner_node.cli.client import PlannerClient
 from planner_node.cli.plan_text import describe_plan
 from planner_node.errors import PlannerError
-from planner_node.goals import parse_goal
 from scene_graph import format_stacks
 
 from .plan_picture import draw_plan
 from .processes import NodeProcesses, use_own_domain
 from .recording import Recording
 from .scene_observer import SceneObserver, SimulationError, true_stacks
-from .task import Failure, TaskResult, goal_text, random_goal, triples
+from .task import (
+    Failure,
+    SceneForGoalError,
+    TaskResult,
+    goal_text,
+    random_goal,
+    scene_for_goal,
+    triples,
+)
 from .task_runner import run_task
+
+#: The greatest seed of a scene that fits into the request.
+MAX_SEED: Final = 2**31 - 1
 
 
 class Narrator:
@@ -53,7 +66,8 @@ class Narrator:
 
     def __call__(self, feedback: AchieveGoal.Feedback) -> None:
         """Shows what is new in one feedback message."""
-        if feedback.plan.plan_id and feedback.plan.plan_id != self._plan_id:
+        # Moves and scenes come once a plan, later only its name.
+        if feedback.plan.moves and feedback.plan.plan_id != self._plan_id:
             self._plan_id = feedback.plan.plan_id
             self.close()
             self._show_plan(feedback)
@@ -146,8 +160,15 @@ def main() -> int:
     """Entry point; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__, prog="ros2 run tamp_bringup demo")
     parser.add_argument("--seed", type=int, default=0, help="seed of scene and goal")
-    parser.add_argument("--blocks", type=int, default=5, help="number of blocks, 3 to 7")
-    parser.add_argument("--goal", default="", help='e.g. "red on blue"; default: random by seed')
+    parser.add_argument(
+        "--blocks", type=int, help="number of blocks, 3 to 7; default 5, or as many as the goal has"
+    )
+    parser.add_argument(
+        "--goal",
+        default="",
+        help='e.g. "red on blue", in the first scene from the seed on that has these blocks; '
+        "default: random by seed",
+    )
     parser.add_argument("--out", type=Path, help="folder for the results; default runs/<time>")
     parser.add_argument("--real-time-factor", type=float, default=1.0, help="0: as fast as it goes")
     options = parser.parse_args(remove_ros_args(sys.argv)[1:])
@@ -157,7 +178,19 @@ def main() -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(line_buffering=True)
     options.out = options.out or Path("runs") / datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
-    options.out.mkdir(parents=True, exist_ok=True)
+    try:
+        asked_for = options.seed
+        options.seed, options.blocks = scene_for_goal(options.goal, options.seed, options.blocks)
+    except (SceneForGoalError, PlannerError) as error:
+        parser.error(f"--goal: {error}")
+    try:
+        make_writable_folder(options.out)
+    except OSError as error:
+        parser.error(f"--out {options.out}: cannot be written: {error.strerror}")
+    if options.seed != asked_for:
+        print(
+            f"demo     scene {options.seed}: the first from {asked_for} on with the goal's blocks"
+        )
     domain = use_own_domain()
     prepare_process()
     print(f"demo     ROS_DOMAIN_ID={domain}: with it, other terminals can listen in")
@@ -196,15 +229,17 @@ def main() -> int:
 
 def _problem(options: argparse.Namespace) -> str:
     """What is wrong with the arguments, before anything is started."""
-    if not 3 <= options.blocks <= 7:
+    if options.blocks is not None and not 3 <= options.blocks <= 7:
         return f"--blocks {options.blocks}: 3 to 7 are possible"
-    if options.seed < 0:
-        return f"--seed {options.seed}: must not be negative"
-    if options.real_time_factor < 0.0:
-        return f"--real-time-factor {options.real_time_factor}: must not be negative"
-    if options.goal:
-        try:
-            parse_goal(options.goal)
-        except PlannerError as error:
-            return f"--goal: {error}"
+    if not 0 <= options.seed <= MAX_SEED:
+        return f"--seed {options.seed}: 0 to {MAX_SEED} are possible"
+    if not 0.0 <= options.real_time_factor < math.inf:
+        return f"--real-time-factor {options.real_time_factor}: must be 0 or more"
     return ""
+
+
+def make_writable_folder(folder: Path) -> None:
+    """Makes a folder and sees that files can be made in it; raises OSError."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryFile(dir=folder):
+        pass

@@ -5,12 +5,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
-from scene_graph import Relation, Stacks, up_relations
-from sim_node.layouts import random_arrangement
+from planner_node.goals import parse_goal, resolve_goal
+from scene_graph import BOX, COLORS, Relation, Stacks, object_name, up_relations
+from sim_node.layouts import MAX_BLOCKS, random_arrangement, random_layout
+
+#: How many blocks the demo's scene has where neither the arguments nor the goal ask for more.
+DEFAULT_BLOCKS: Final = 5
+#: So many scenes are looked through for one that has what a goal names. Of 9 colours, one scene in
+#: 126 or more has any given ones, so that this many hold one but for once in 10^30.
+_SCENES_TRIED: Final = 10_000
 
 
 @dataclass(frozen=True)
@@ -47,6 +54,47 @@ class TaskResult:
     def to_json(self) -> dict[str, Any]:
         """The content of ``result.json``."""
         return asdict(self)
+
+
+class SceneForGoalError(ValueError):
+    """There is no scene for a goal; the sentence says what could be asked for instead."""
+
+
+def scene_for_goal(goal: str, seed: int, blocks: int | None = None) -> tuple[int, int]:
+    """Seed and number of blocks of a random scene that has every block that a goal names.
+
+    The seed is the first from ``seed`` on whose scene has them; without a goal it is ``seed``.
+
+    Args:
+        blocks: how many the scene shall have; None: 5, or as many as the goal names.
+
+    Raises:
+        SceneForGoalError: the goal names more blocks than that, or some that no random scene has.
+        PlannerError: the goal makes no sense, or a name in it fits several blocks.
+    """
+    if not goal:
+        return seed, blocks or DEFAULT_BLOCKS
+    boxes = [object_name(color, BOX) for color in COLORS]
+    parsed = parse_goal(goal)
+    for words in (words for item in parsed for words in (item.subject, item.object)):
+        known = {*COLORS, BOX, "block", "object"}
+        unknown = set(words.text.replace("_", " ").split()) - known
+        if words.base is None and unknown:
+            raise SceneForGoalError(
+                f"'{words.text}' is in no scene of the demo; it has boxes, of the colours "
+                f"{', '.join(COLORS)}"
+            )
+    named = resolve_goal(parsed, boxes).names
+    count = blocks or max(DEFAULT_BLOCKS, len(named))
+    if len(named) > min(count, MAX_BLOCKS):
+        raise SceneForGoalError(
+            f"the goal names {len(named)} blocks, the scene has {min(count, MAX_BLOCKS)}; "
+            f"{MAX_BLOCKS} are possible"
+        )
+    for candidate in range(seed, seed + _SCENES_TRIED):
+        if named <= {name for stack in random_layout(candidate, count) for name in stack}:
+            return candidate, count
+    raise SceneForGoalError(f"no scene of {count} blocks from seed {seed} on has all of {named}")
 
 
 def random_goal(names: Sequence[str], seed: int, stack_count: int = 3) -> Stacks:

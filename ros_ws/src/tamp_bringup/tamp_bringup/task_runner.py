@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable
 
 from tamp_interfaces.action import AchieveGoal
 
 from planner_node.cli.client import PlannerClient, PlannerUnavailableError
+from planner_node.errors import PlannerError
 from planner_node.goals import parse_goal, resolve_goal
 from scene_graph import SceneGraph
 
@@ -60,8 +62,10 @@ def run_task(
     except NodeDiedError as error:
         failure = Failure(error.node.removesuffix("_node"), str(error))
     except KeyboardInterrupt:
-        planner.cancel()
-        planner.result(timeout=CANCEL_TIMEOUT)
+        with contextlib.suppress(PlannerUnavailableError, TimeoutError):  # the nodes go down anyhow
+            planner.withdraw()
+            if planner.is_started:
+                planner.result(timeout=CANCEL_TIMEOUT)
         raise
     total = time.monotonic() - started
 
@@ -102,4 +106,7 @@ def goal_holds(goal: str, truth: SceneGraph) -> bool:
     stacks = true_stacks(truth)
     if not stacks:
         return False
-    return resolve_goal(parse_goal(goal), truth.names).holds(stacks)
+    try:
+        return resolve_goal(parse_goal(goal), truth.names).holds(stacks)
+    except PlannerError:  # of a block that is not there, nothing holds
+        return False

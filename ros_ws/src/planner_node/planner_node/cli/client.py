@@ -43,6 +43,7 @@ WHAT_TO_DO: Final = (
     "'ros2 run planner_node stop', or look at the scene and ask again"
 )
 
+_UNKNOWN_GOAL: Final = f"planner_node does not know the goal; it was started anew. {WHAT_TO_DO}"
 _TERMINATED: Final = CancelGoal.Response.ERROR_GOAL_TERMINATED
 
 
@@ -144,6 +145,11 @@ class PlannerClient:
         self._followed_by = self._planner.living()
         self._result = self._thread.call(handle.get_result_async)
 
+    @property
+    def is_started(self) -> bool:
+        """Whether a planner has accepted a goal from :meth:`start`."""
+        return self._result is not None
+
     def is_done(self) -> bool:
         """Whether the result is there.
 
@@ -175,9 +181,7 @@ class PlannerClient:
         if result.done() or code in (CancelGoal.Response.ERROR_NONE, _TERMINATED):
             return
         if code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
-            raise PlannerUnavailableError(
-                f"planner_node does not know the goal; it was started anew. {WHAT_TO_DO}"
-            )
+            raise PlannerUnavailableError(_UNKNOWN_GOAL)
         raise PlannerUnavailableError("planner_node refused to cancel the goal; its log says why")
 
     def withdraw(self, timeout: float = 2.0) -> bool:
@@ -220,9 +224,7 @@ class PlannerClient:
             arrived.wait(0.1)
         response = future.result()
         if response.status == GoalStatus.STATUS_UNKNOWN:
-            raise PlannerUnavailableError(
-                f"planner_node does not know the goal; it was started anew. {WHAT_TO_DO}"
-            )
+            raise PlannerUnavailableError(_UNKNOWN_GOAL)
         return response.result
 
     def close(self) -> None:
@@ -247,12 +249,9 @@ class PlannerClient:
         if not self._followed_by:  # accepted before its first sign of life was heard
             self._followed_by = self._planner.living()
         if self._followed_by and self._planner.are_gone(self._followed_by):
-            anew = bool(self._planner.living() - self._followed_by)
-            return (
-                "planner_node went away, and another one was started,"
-                if anew
-                else "planner_node went away: it has given no sign of life for 8 s"
-            )
+            if self._planner.living() - self._followed_by:
+                return "planner_node went away, and another one was started,"
+            return "planner_node went away: it has given no sign of life for 8 s"
         if self._gone_since is None and not self._goal_client.server_is_ready():
             self._gone_since = time.monotonic()
         # A planner that comes back knows nothing of the goal, so its return changes nothing.
