@@ -207,6 +207,10 @@ class SimNode(Node):
             self._refuse(response, f"{error}; the scene is unchanged")
         except PhysicsError as error:
             self._refuse(response, f"the scene was not reset: {error}")
+        except Exception as error:  # a defect must neither leave the caller waiting nor go unseen
+            self.get_logger().error(f"resetting the scene failed: {error!r}", exc_info=True)
+            sentence = f"resetting the scene failed half-way ({type(error).__name__}: {error})"
+            self._refuse(response, f"{sentence}; reset it again, or start sim_node anew")
         if conflict := self._presence.conflict():
             response.message += f"; but {conflict}"
         return response
