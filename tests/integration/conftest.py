@@ -9,16 +9,16 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Collection, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
 
 import pytest
 import rclpy
 from rclpy.context import Context
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from ros2_run import Process, Spawn, Start, start_process
 from tamp_runtime.node_process import prepare_process
+from tamp_runtime.orderly_executor import OrderlyExecutor
 
 prepare_process()
 os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
@@ -40,7 +40,7 @@ class RosContext:
     def __init__(self, domain_id: int) -> None:
         self.context = Context()
         rclpy.init(context=self.context, domain_id=domain_id)
-        self._executor = MultiThreadedExecutor(num_threads=8, context=self.context)
+        self._executor = OrderlyExecutor(8, context=self.context)
         self._nodes: list[Node] = []
         self._errors: list[Exception] = []
         self._stopping = threading.Event()
@@ -74,10 +74,6 @@ class RosContext:
         self._thread.join()
         # Callbacks that still wait for something see that the context is gone.
         self.context.try_shutdown()
-        # Executor.shutdown of rclpy 7.1.6 does not wait for callbacks that run; a node must not
-        # be destroyed under one.
-        workers: ThreadPoolExecutor = self._executor._executor
-        workers.shutdown(wait=True)
         self._executor.shutdown()
         for node in reversed(self._nodes):
             node.destroy_node()

@@ -11,16 +11,17 @@ import threading
 import time
 import traceback
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from types import FrameType
 from typing import Final
 
 import rclpy
 from rclpy.context import Context
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
+
+from .orderly_executor import OrderlyExecutor
 
 #: After how long a thread that computes passes the interpreter on to one that waits for it [s].
 SWITCH_INTERVAL: Final = 1e-4
@@ -68,7 +69,7 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.ALL)
     context = rclpy.get_default_context()
     threading.Thread(target=_end_in_time, args=[context], daemon=True).start()
-    executor = MultiThreadedExecutor(num_threads=threads)
+    executor = OrderlyExecutor(threads)
     node: Node | None = None
     try:
         node = make_node()
@@ -90,10 +91,8 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
         # come in between: an RCLError, which is a RuntimeError.
         with suppress(RuntimeError):
             rclpy.try_shutdown()
-        # Executor.shutdown of rclpy 7.1.6 leaves running callbacks behind; a node must not be
-        # destroyed under one. They see the shutdown, and every wait in them has a timeout.
-        workers: ThreadPoolExecutor = executor._executor
-        workers.shutdown(wait=True, cancel_futures=True)
+        # Callbacks that run see the shutdown, and every wait in them has a timeout. It waits for
+        # them: a node must not be destroyed under one.
         executor.shutdown()
         if node is not None:
             node.destroy_node()
@@ -128,7 +127,7 @@ def _end_in_time(context: Context) -> None:
     os._exit(EXIT_STUCK)
 
 
-def _spin(executor: MultiThreadedExecutor, node: Node) -> None:
+def _spin(executor: OrderlyExecutor, node: Node) -> None:
     """Spins until shutdown. An exception of a callback is logged, and the node lives on."""
     while node.context.ok():
         try:

@@ -5,15 +5,13 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from typing import Final, TypeVar
 
-from rclpy.executors import (
-    ExternalShutdownException,
-    MultiThreadedExecutor,
-    SingleThreadedExecutor,
-)
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
+
+from .orderly_executor import OrderlyExecutor
 
 #: A callback that takes longer than this blocks the thread [s].
 CALL_TIMEOUT: Final = 10.0
@@ -30,7 +28,7 @@ class NodeThread:
         self._executor = (
             SingleThreadedExecutor(context=context)
             if threads == 1
-            else MultiThreadedExecutor(threads, context=context)
+            else OrderlyExecutor(threads, context=context)
         )
         for node in nodes:
             self._executor.add_node(node)
@@ -62,10 +60,6 @@ class NodeThread:
         """Stops spinning; no callback runs afterwards, and the nodes can be destroyed."""
         self._stopping.set()
         self._thread.join()
-        if isinstance(self._executor, MultiThreadedExecutor):
-            # Executor.shutdown of rclpy 7.1.6 leaves running callbacks behind.
-            workers: ThreadPoolExecutor = self._executor._executor
-            workers.shutdown(wait=True, cancel_futures=True)
         self._executor.shutdown()
 
     def _spin(self) -> None:
