@@ -228,12 +228,14 @@ def _plain_task(setting: Setting, seed: int) -> tuple[str, bool]:
         return "a block stands on nothing", False
     goal = some_moves_away(stacks, 1, seed)
     asker = ProgramAsker(setting.planner, PATIENCE)
-    asker.start(goal_text(goal))
     deadline = time.monotonic() + PATIENCE + ANSWER_SECONDS
-    while (answer := asker.answer()) is None and time.monotonic() < deadline:
-        setting.processes.check()
-        time.sleep(0.05)
-    asker.close()
+    try:
+        asker.start(goal_text(goal))
+        while (answer := asker.answer()) is None and time.monotonic() < deadline:
+            setting.processes.check()
+            time.sleep(0.05)
+    finally:
+        asker.close()
     if answer is None:
         return "no answer to a plain task", True
     if not answer.claimed:
