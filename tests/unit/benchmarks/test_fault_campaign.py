@@ -32,7 +32,7 @@ FAULT = Fault(
 
 
 def truth(stacks: Stacks) -> SceneGraph:
-    objects = tuple(SceneObject(name, *name.split("_")) for stack in stacks for name in stack)
+    objects = tuple(SceneObject(name, "red", "box") for stack in stacks for name in stack)
     places = tuple(Place(index, (0.0, 0.0, 0.0)) for index in range(len(stacks)))
     return SceneGraph(objects, up_relations(stacks), places)
 
