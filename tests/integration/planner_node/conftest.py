@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from planner_neighbours import Behaviour, FakeMotion, FakePerception, World
 from rclpy.parameter import Parameter
+from tamp_interfaces.msg import MotionStatus
 
 from planner_node.cli.client import PlannerClient
 from planner_node.node import PlannerNode
@@ -22,13 +23,32 @@ def _parameters(values: dict[str, Any]) -> list[Parameter]:
 
 
 class Bench:
-    """A planner, its neighbours and a client, all in one context."""
+    """A planner, its neighbours and a client, all in one context.
 
-    def __init__(self, ros: Any, *behaviours: Behaviour, **parameters: Any) -> None:
+    Args:
+        earlier: a plan that the motion node carries out since before the planner was there.
+        with_motion: whether there is a motion node.
+    """
+
+    def __init__(
+        self,
+        ros: Any,
+        *behaviours: Behaviour,
+        earlier: str = "",
+        with_motion: bool = True,
+        **parameters: Any,
+    ) -> None:
         self.ros = ros
         self.world = World(START)
         self.perception = ros.add(FakePerception(self.world, context=ros.context))
-        self.motion = ros.add(FakeMotion(self.world, *behaviours, context=ros.context))
+        self.motion = FakeMotion(self.world, *behaviours, context=ros.context)
+        if earlier:
+            self.motion.busy.acquire()
+            self.motion.report(earlier, MotionStatus.EXECUTING)
+        if with_motion:
+            ros.add(self.motion)
+        else:
+            self.motion.destroy_node()
         self.planner = ros.add(
             PlannerNode(
                 context=ros.context,
@@ -41,10 +61,10 @@ class Bench:
         ros.wait_until(
             lambda: (
                 self.planner.count_publishers("scene_graph") == 1
-                and self.planner.count_publishers("motion_status") == 1
+                and self.planner.count_publishers("motion_status") == with_motion
                 and self.perception.count_subscribers("scene_graph") == 1
-                and self.motion.count_subscribers("motion_status") == 1
-                and self.motion.count_publishers("symbolic_plan") == 1
+                and self.planner.count_subscribers("symbolic_plan") == with_motion
+                and (not with_motion or self.motion.count_publishers("symbolic_plan") == 1)
             ),
             what="discovery",
         )

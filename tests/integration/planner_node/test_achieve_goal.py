@@ -109,8 +109,7 @@ def test_without_a_motion_node_nobody_hears_the_plan(
     make_bench: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("planner_node.loop.execution.DISCOVERY_SECONDS", PERIOD)
-    bench = make_bench()
-    bench.ros.remove(bench.motion)
+    bench = make_bench(with_motion=False)
     result = bench.achieve(GOAL)
     assert result.status == Status.MOTION_SILENT
     assert "nobody subscribes to symbolic_plan" in result.message

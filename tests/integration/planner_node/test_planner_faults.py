@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Faults as they come over the wire: earlier lives, arms left behind, crowds and dead neighbours."""
+"""Faults as they come over the wire: earlier lives, arms left behind, crowds, dead neighbours."""
 
 from __future__ import annotations
 
 import threading
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from planner_neighbours import PERIOD, FakeMotion
-from rclpy.node import Node
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.msg import MotionStatus, SymbolicPlan
-from tamp_runtime.presence import Presence
-
-from planner_node.node import PlannerNode
+from tamp_runtime.qos import RELIABLE
 
 Status = AchieveGoal.Result
 
@@ -21,28 +19,24 @@ GOAL = "red on green, blue on red"
 
 def test_fault_1_a_restarted_planner_stops_the_plan_of_its_earlier_life(make_bench: Any) -> None:
     """It was not there when the motion node reported the plan; the report is latched."""
-    bench = make_bench()
-    bench.wait_for_scene()
-    bench.ros.remove(bench.planner)
+    bench = make_bench(earlier="earlier")
 
     def goes_on() -> None:
         bench.motion.report("earlier", MotionStatus.EXECUTING)
 
-    with bench.motion.busy:
-        goes_on()
-        bench.planner = bench.ros.add(PlannerNode(context=bench.ros.context))
-        bench.ros.wait_until(lambda: bench.client.plan(GOAL).status == Status.BUSY)
-        goes_on()
-        answer = bench.client.plan(GOAL, execute=True)
-        assert (answer.status, bench.motion.plans) == (Status.BUSY, [])
-        assert "plan earlier" in answer.message
-        assert "ros2 run planner_node stop" in answer.message
-        goes_on()
-        bench.client.start(GOAL)
-        seen = bench.feedback_until(lambda item: "earlier" in item.message)
-        assert "stopping it, waiting until the arm rests" in seen[-1].message
-        bench.ros.wait_until(lambda: bench.motion.stops)
-        bench.motion.report("earlier", MotionStatus.CANCELLED)
+    bench.ros.wait_until(lambda: bench.client.plan(GOAL).status == Status.BUSY)
+    goes_on()
+    answer = bench.client.plan(GOAL, execute=True)
+    assert (answer.status, bench.motion.plans) == (Status.BUSY, [])
+    assert "plan earlier" in answer.message
+    assert "ros2 run planner_node stop" in answer.message
+    goes_on()
+    bench.client.start(GOAL)
+    seen = bench.feedback_until(lambda item: "earlier" in item.message)
+    assert "stopping it, waiting until the arm rests" in seen[-1].message
+    bench.ros.wait_until(lambda: bench.motion.stops)
+    bench.motion.report("earlier", MotionStatus.CANCELLED)
+    bench.motion.busy.release()
     result = bench.client.result(60.0)
     assert result.status == Status.SUCCESS, result.message
     assert bench.motion.stops[0].plan_id == "earlier"
@@ -78,14 +72,20 @@ def test_fault_5_a_plan_that_a_starting_motion_node_passed_over_is_published_aga
 def test_fault_6_two_of_a_kind_are_refused_until_one_is_gone(make_bench: Any) -> None:
     bench = make_bench()
     bench.wait_for_scene()
-    twins = [bench.ros.add(Node(name, context=bench.ros.context)) for name in ("one", "other")]
-    for twin in twins:
-        Presence(twin, "motion_node")
+    life = bench.motion.create_publisher(DiagnosticArray, "diagnostics", RELIABLE)
+    alive = ["one", "other"]
+
+    def live() -> None:
+        status = [DiagnosticStatus(name="motion_node", hardware_id=name) for name in alive]
+        if bench.ros.context.ok():
+            life.publish(DiagnosticArray(status=status))
+
+    bench.motion.create_timer(PERIOD, live)
     bench.ros.wait_until(lambda: bench.client.plan(GOAL).status == Status.CONFLICT)
     result = bench.achieve(GOAL)
     assert (result.status, bench.motion.plans) == (Status.CONFLICT, [])
     assert "there are two of motion_node in this domain" in result.message
-    bench.ros.remove(twins[0])
+    alive.pop()
     bench.ros.wait_until(lambda: bench.client.plan(GOAL).status == Status.SUCCESS)
 
 
