@@ -46,14 +46,16 @@ PARAMETERS: Final = (
     ParameterSpec(
         "graph_max_age",
         _DEFAULTS.graph_max_age,
-        "Scene graphs whose stamp is further than this from the node's clock are not used [s].",
+        "Scene graphs whose stamp is further than this from the node's clock are not used, nor any "
+        "when none has arrived for so long in wall time [s].",
         0.1,
         3600.0,
     ),
     ParameterSpec(
         "perceive_timeout",
         _DEFAULTS.perceive_timeout,
-        "achieve_goal waits this long for a confident scene graph [s, wall time].",
+        "achieve_goal waits this long for a confident scene graph, and for news of an arm of which "
+        "nothing is heard [s, wall time].",
         0.1,
         3600.0,
     ),
@@ -67,14 +69,16 @@ PARAMETERS: Final = (
     ParameterSpec(
         "motion_accept_timeout",
         _DEFAULTS.motion_accept_timeout,
-        "The motion node has this long to take up a plan [s, wall time].",
+        "The motion node has this long to take up a plan, which is published again meanwhile where "
+        "it reports to be idle [s, wall time].",
         0.1,
         3600.0,
     ),
     ParameterSpec(
         "motion_silence_timeout",
         _DEFAULTS.motion_silence_timeout,
-        "A plan is given up when motion_status is silent for this long [s, wall time].",
+        "A plan is given up when motion_status is silent for this long; the motion node has as long "
+        "once more to come back, and then the scene is looked at again [s, wall time].",
         0.1,
         3600.0,
     ),
