@@ -25,7 +25,7 @@ from tamp_interfaces.msg import (
     SceneObject,
     SymbolicPlan,
 )
-from tamp_runtime.qos import LATCHED, RELIABLE, SENSOR_DATA
+from tamp_runtime.qos import LATCHED, RELIABLE, SENSOR_DATA, STATUS
 from trajectory_msgs.msg import JointTrajectory
 
 from motion_node.node import MotionNode
@@ -49,6 +49,8 @@ class FakeArm(Node):
         step: how much later by its clock each tick is [s]; 15 times faster than the wall clock,
             and slower on a machine that is busy elsewhere.
         hold_at: it stands still, as if held, this long after it set out [s]; None: it does not.
+        cut_at: the next trajectory ends this long after it set out [s]; None: at its end.
+        unusable: the third joint's position is not a number.
         block: half of what the fingers close on [m].
         trajectories: those received.
     """
@@ -59,6 +61,9 @@ class FakeArm(Node):
         super().__init__("fake_arm", **kwargs)
         self.step, self.block = 15 * self.TICK, EDGE / 2
         self.hold_at: float | None = None
+        self.cut_at: float | None = None
+        self.unusable = False
+        self._end = 0.0
         self.trajectories: list[JointTrajectory] = []
         self._lock = threading.Lock()
         self._positions = HOME.copy()
@@ -77,6 +82,11 @@ class FakeArm(Node):
         self._description.publish(String(data=text or path.read_text(encoding="utf-8")))
 
     @property
+    def time(self) -> float:
+        """By its clock [s]."""
+        return self._time
+
+    @property
     def positions(self) -> Array:
         """Where the joints are, shape (9,)."""
         with self._lock:
@@ -92,6 +102,11 @@ class FakeArm(Node):
         """Whether the arm is home with open fingers."""
         return bool(np.abs(self.positions - HOME).max() < 0.02)
 
+    def put(self, arm: Array) -> None:
+        """The arm is there, and nobody has sent it."""
+        with self._lock:
+            self._positions[:FINGERS] = arm
+
     def _follow(self, message: JointTrajectory) -> None:
         times = [p.time_from_start.sec + 1e-9 * p.time_from_start.nanosec for p in message.points]
         order = [list(message.joint_names).index(name) for name in PANDA.joint_names]
@@ -101,6 +116,7 @@ class FakeArm(Node):
             jump = np.abs(positions[0] - self._positions)[:FINGERS].max()
             assert jump < 0.3, f"the trajectory starts {jump:.2f} rad from here"
             self._spline, self._along = CubicHermiteSpline(times, positions, velocities), 0.0
+            self._end, self.cut_at = self.cut_at or times[-1], None
             self.trajectories.append(message)
 
     def _tick(self) -> None:
@@ -109,9 +125,11 @@ class FakeArm(Node):
             self._time += 0.001 if held else self.step
             if self._spline is not None and not held:
                 self._along += self.step
-                self._positions = np.array(self._spline(min(self._along, self._spline.x[-1])))
+                self._positions = np.array(self._spline(min(self._along, self._end)))
                 self._positions[FINGERS:] = np.maximum(self._positions[FINGERS:], self.block)
             positions, stamp = self._positions.tolist(), self._time
+            if self.unusable:
+                positions[2] = float("nan")
         if not self.context.ok():
             return
         header = Header()
@@ -145,6 +163,15 @@ class FakePlanner(Node):
     def end(self, plan_id: str) -> MotionStatus | None:
         """The status that ended a plan."""
         return next((status for status in self.of(plan_id) if status.state in ENDS), None)
+
+
+class LateListener(Node):
+    """Hears what was said before it came."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("late_listener", **kwargs)
+        self.statuses: list[MotionStatus] = []
+        self.create_subscription(MotionStatus, "motion_status", self.statuses.append, STATUS)
 
 
 class Bench:

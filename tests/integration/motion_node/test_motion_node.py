@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from motion_neighbours import HOME, Bench, plan_message
+from motion_neighbours import FINGERS, HOME, Bench, LateListener, plan_message
 from rclpy.parameter import Parameter
 from tamp_interfaces.msg import MotionStatus
 
@@ -115,3 +115,75 @@ def test_limits_of_the_arm_and_shares_of_them_change_trajectories(bench: Bench) 
         bench.planner.ask(plan_message(f"{scale}", (0, 1)))
         durations.append(bench.end(f"{scale}").duration)
     assert durations[1] > 1.2 * durations[0]
+
+
+def test_fault_5_statuses_go_on_after_a_plan_and_late_listeners_hear_them(bench: Bench) -> None:
+    bench.start()
+    bench.planner.ask(plan_message("a", (0, 2)))
+    end = bench.end("a")
+    assert (end.arm, end.held) == (MotionStatus.ARM_HOME, "")
+    late = bench.ros.add(LateListener(context=bench.ros.context))
+    bench.wait(lambda: any(s.plan_id == "a" for s in late.statuses), "what was said before")
+
+    def idle() -> list[MotionStatus]:
+        return [status for status in list(late.statuses) if status.state == MotionStatus.IDLE]
+
+    bench.wait(lambda: idle() and idle()[-1].arm == MotionStatus.ARM_HOME, "IDLE after the plan")
+    beat = idle()[-1]
+    assert beat.plan_id == ""
+    assert beat.hand.z > 0.3  # where the hand of the panda is at home
+    bench.planner.ask(plan_message("a", (0, 2)))  # as a planner does that hears of an idle node
+    count = len(bench.planner.of("a"))
+    bench.wait(lambda: len(bench.planner.of("a")) > count, "the end once more")
+    assert bench.planner.of("a")[-1].state == MotionStatus.SUCCEEDED
+    assert len(bench.arm.trajectories) == 1
+
+
+def test_fault_2_a_block_is_put_down_when_its_trajectory_ends_early(bench: Bench) -> None:
+    bench.start(max_lag=2.0)
+    bench.arm.cut_at = 3.0  # with the block in the hand
+    bench.planner.ask(plan_message("a", (0, 2)))
+    end = bench.end("a")
+    assert (end.state, end.reason) == (MotionStatus.FAILED, MotionStatus.TRACKING_LOST)
+    assert end.message.endswith("green_box was put down on stack2 and the arm is home"), end.message
+    assert (end.arm, end.held, end.moves_done) == (MotionStatus.ARM_HOME, "", 1)
+    assert bench.arm.at_home
+    bench.planner.ask(plan_message("b", (0, 2)))
+    assert bench.end("b").state == MotionStatus.SUCCEEDED
+
+
+def test_fault_2_a_plan_without_moves_brings_an_arm_home_that_was_left_somewhere(
+    bench: Bench,
+) -> None:
+    bench.start()
+    bench.arm.put(HOME[:FINGERS] + np.array([0.4, 0.3, 0.0, -0.2, 0.0, 0.1, 0.0]))
+
+    def resting() -> bool:
+        return any(s.arm == MotionStatus.ARM_RESTING for s in list(bench.planner.statuses))
+
+    bench.wait(resting, "a status that says so")
+    bench.planner.stop("whatever")
+    end = bench.end("whatever")
+    assert (end.state, end.arm) == (MotionStatus.CANCELLED, MotionStatus.ARM_HOME), end.message
+    assert bench.arm.at_home
+
+
+def test_fault_6_plans_are_refused_while_there_are_two_motion_nodes(bench: Bench) -> None:
+    bench.start()
+    second = bench.ros.add(bench.make())
+    bench.wait(lambda: second._presence.conflict(), "what two of one find")
+    bench.planner.ask(plan_message("a", (0, 2)))
+    end = bench.end("a")
+    assert (end.state, end.reason) == (MotionStatus.FAILED, MotionStatus.CONFLICT)
+    assert "motion_node" in end.message
+    assert not bench.arm.trajectories
+
+
+def test_fault_13_joint_states_that_are_no_numbers_are_named(bench: Bench) -> None:
+    bench.arm.unusable = True
+    bench.start(joint_state_timeout=2.0)
+    bench.planner.ask(plan_message("a", (0, 2)))
+    end = bench.end("a")
+    assert (end.state, end.reason) == (MotionStatus.FAILED, MotionStatus.NO_JOINT_STATES)
+    assert "without finite positions of panda_joint3" in end.message
+    assert end.arm == MotionStatus.ARM_UNKNOWN

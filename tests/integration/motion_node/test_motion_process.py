@@ -42,6 +42,27 @@ def test_stopped_in_the_middle_of_a_plan_the_arm_goes_home_and_the_next_one_does
     assert bench.arm.at_home
 
 
+def test_fault_3_a_process_that_was_stopped_follows_the_arm_on(
+    ros_context: Any, start: Start
+) -> None:
+    bench = Bench(ros_context)
+    bench.arm.hold_at = 1.0
+    parameters = [word for name, value in PATIENT.items() for word in ("-p", f"{name}:={value}")]
+    process = start(*NODE, "--ros-args", *parameters)
+    bench.wait_for_idle()
+    bench.planner.ask(plan_message("a", (0, 2)))
+    bench.wait(lambda: any(s.progress > 0.1 for s in bench.planner.of("a")), "seen to move")
+    process.send_signal(signal.SIGSTOP)
+    begun, bench.arm.hold_at = bench.arm.time, None
+    bench.wait(lambda: bench.arm.time > begun + 60.0, "an arm that goes on")
+    process.send_signal(signal.SIGCONT)
+    end = bench.end("a")
+    assert end.state == MotionStatus.SUCCEEDED, end.message
+    assert len(bench.arm.trajectories) == 1
+    process.send_signal(signal.SIGTERM)
+    assert finish(process).code == 0
+
+
 def test_a_parameter_that_cannot_be_is_one_sentence(start: Start) -> None:
     code, _, stderr = finish(start(*NODE, "--ros-args", "-p", "robot:=nobody"))
     assert code == 2

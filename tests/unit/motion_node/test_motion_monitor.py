@@ -188,6 +188,17 @@ def test_fault_3_joint_states_that_were_lost_for_a_while_do_no_harm(
     assert verdict is Verdict.ARRIVED
 
 
+def test_an_arm_that_may_have_come_and_gone_unseen_is_not_said_not_to_have_started(
+    trajectory: Trajectory,
+) -> None:
+    monitor = Monitor(trajectory, ArmState(1000.0, 0.0, HOME, 1.0), MonitorSettings())
+    verdict, time = Verdict.GOING, 60.0
+    while verdict is Verdict.GOING:
+        time += 1 / 60
+        verdict = monitor.update(ArmState(1000.0 + time, time, HOME, time))
+    assert verdict is Verdict.UNSEEN
+
+
 def test_silence_does_not_make_a_short_disturbance_long(trajectory: Trajectory) -> None:
     monitor = Monitor(trajectory, ArmState(1000.0, 0.0, HOME, 1.0), MonitorSettings())
     for time in np.arange(0.0, 8.0, 1 / 60):

@@ -29,6 +29,7 @@ class Verdict(Enum):
     GOING = auto()
     ARRIVED = auto()
     NOT_STARTED = auto()
+    UNSEEN = auto()
     OFF_THE_PATH = auto()
     BEHIND = auto()
     NOT_ARRIVED = auto()
@@ -141,7 +142,7 @@ class Monitor:
         self.time = 0.0
         self.lag = 0.0
         self._sent = self._last = state
-        self._anchor = state.stamp
+        self._anchor, self._leapt = state.stamp, False
         arm, fingers = trajectory.positions.furthest(trajectory.positions[0])
         # One that goes nowhere cannot be seen to start.
         self._started = bool(
@@ -174,7 +175,11 @@ class Monitor:
                 state.received - self._sent.received > self.settings.start_seconds
                 and state.stamp - self._sent.stamp > self.settings.start_seconds
             )
-            return Verdict.NOT_STARTED if late else Verdict.GOING
+            # In a leap of the stamps the arm may have gone and come back.
+            self._leapt |= state.stamp - previous.stamp > self.settings.start_seconds / 2
+            if not late:
+                return Verdict.GOING
+            return Verdict.UNSEEN if self._leapt else Verdict.NOT_STARTED
         error = self._locate(state, max(0.0, state.stamp - previous.stamp))
         elapsed = state.stamp - self._anchor
         self.lag = max(0.0, min(elapsed, self.trajectory.duration) - self.time)

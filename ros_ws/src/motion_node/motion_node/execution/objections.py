@@ -13,6 +13,7 @@ from .monitor import Verdict
 
 _SENTENCES = {
     Verdict.NOT_STARTED: "the arm does not start; its controller may have refused the trajectory",
+    Verdict.UNSEEN: "no joint_states came while the arm was to set out; it may have moved unseen",
     Verdict.OFF_THE_PATH: "the arm has left its path; something may hold it",
     Verdict.BEHIND: "the arm falls behind its trajectory; something may hold it",
     Verdict.NOT_ARRIVED: "the arm does not reach the end of its trajectory",
