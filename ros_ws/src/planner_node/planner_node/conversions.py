@@ -132,7 +132,9 @@ def read_goal(request: Any, interpret: Interpret) -> Callable[[Stacks], Goal]:
     has_image = request.goal_image.width > 0 or request.goal_segmentation.width > 0
     if not has_image:
         parsed = parse_goal(request.goal)
-        return lambda seen: resolve_goal(parsed, [name for stack in seen for name in stack])
+        return lambda seen: resolve_goal(
+            parsed, [name for stack in seen for name in stack], len(seen)
+        )
     if request.goal.strip():
         raise InvalidGoalError("there is a goal text and a goal image; give one of them", 0)
     message = interpret(request.goal_image, request.goal_segmentation)

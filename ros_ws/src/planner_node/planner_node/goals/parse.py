@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Goals as people type them: "red on blue, the green box left of red and cyan on stack 2".
+"""Goals as people type them: "put red on blue, the green box left of red and cyan on stack 2".
 
 Parsing needs no scene, so that a goal that makes no sense is refused before anything else happens;
 :mod:`planner_node.goals.resolve` then finds the objects that its names mean. Every way to write a
@@ -19,6 +19,10 @@ from ..errors import InvalidGoalError
 
 #: Words that may stand in front of a name or a predicate and mean nothing.
 FILLERS: Final = frozenset({"the", "is"})
+#: Verbs that a relation may start with; the second kind are nouns too, as in "stack 2 below red".
+VERBS: Final = frozenset({"put", "move"})
+NOUN_VERBS: Final = frozenset({"place", "stack"})
+POLITE: Final = "please"
 EXAMPLE: Final = "write relations like 'red on blue, green left of red'"
 
 _TOKEN: Final = re.compile(r"(?P<word>[^\W_][\w-]*)|(?P<separator>[,;])|(?P<other>\S)")
@@ -88,6 +92,7 @@ def _clauses(text: str) -> Iterator[list[Words]]:
 
 def _parse_relation(text: str, words: list[Words], phrases: _Phrases) -> ParsedRelation:
     start, end = words[0].offset, _end(words)
+    words = _without_verb(words, phrases)
     found = list(_find(words, phrases))
     if not found:
         known = ", ".join(_known())
@@ -110,6 +115,24 @@ def _parse_relation(text: str, words: list[Words], phrases: _Phrases) -> ParsedR
     phrase = found[0].phrase
     _check_bases(subject, phrase, object_, " ".join(word.text for word in written))
     return ParsedRelation(subject, phrase, object_)
+
+
+def _without_verb(words: list[Words], phrases: _Phrases) -> list[Words]:
+    """The words of a clause without "please" and a verb in front."""
+    if words[0].text == POLITE:
+        words = words[1:]
+    if not words:
+        return words
+    verb, rest = words[0].text, words[1:]
+    names_a_place = not rest or rest[0].text.isdigit() or _starts_with(rest, phrases)
+    is_verb = verb in VERBS or (verb in NOUN_VERBS and not names_a_place)
+    return rest if is_verb else words
+
+
+def _starts_with(words: Sequence[Words], phrases: _Phrases) -> bool:
+    """Whether a phrase stands in front; fillers before it count for nothing."""
+    kept = tuple(word.text for word in words if word.text not in FILLERS)
+    return any(kept[: len(phrase)] == phrase for phrase in phrases)
 
 
 def _end(words: Sequence[Words]) -> int:
