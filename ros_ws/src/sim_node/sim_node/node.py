@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+import traceback
 from collections.abc import Callable
 from typing import Any, Final
 
@@ -208,7 +209,7 @@ class SimNode(Node):
         except PhysicsError as error:
             self._refuse(response, f"the scene was not reset: {error}")
         except Exception as error:  # a defect must neither leave the caller waiting nor go unseen
-            self.get_logger().error(f"resetting the scene failed: {error!r}", exc_info=True)
+            self.get_logger().error(f"resetting the scene failed:\n{traceback.format_exc()}")
             sentence = f"resetting the scene failed half-way ({type(error).__name__}: {error})"
             self._refuse(response, f"{sentence}; reset it again, or start sim_node anew")
         if conflict := self._presence.conflict():
