@@ -16,13 +16,13 @@ from typing import Any, Final
 
 from tamp_runtime.motion_report import SOMETHING, MotionReason, MotionReport, MotionState
 
-from ..errors import CancelledError, InfeasibleError, InvalidPlanError
+from ..errors import CancelledError, MotionError
 from ..phases import HOME, PICK
 from ..planner import Motion
 from ..timing.trajectory import Trajectory
 from .arm_state import ArmStates
 from .condition import REST_SECONDS, Condition
-from .errors import ClosedError, ExecutionError
+from .errors import ClosedError, ExecutionError, findings
 from .follow import Follower
 from .plan import Plan, Planner
 from .recovery import Recovered, Recovery
@@ -94,30 +94,11 @@ class Executive:
             return
         except CancelledError as error:
             self._tell(MotionState.CANCELLED, str(error))
-        except InvalidPlanError as error:
-            self._fail(
-                MotionReason.INVALID_PLAN,
-                str(error),
-                object_name=error.object_name,
-                move=max(error.move, 0),
-            )
-        except InfeasibleError as error:
-            self._fail(
-                MotionReason.INFEASIBLE,
-                str(error),
-                bound=error.bound,
-                object_name=error.object_name,
-                constraint=error.constraint,
-                move=min(error.move, max(len(plan.moves) - 1, 0)),
-                phase=error.phase,
-            )
-        except ExecutionError as error:
-            self._fail(error.reason, str(error))
+        except MotionError as error:
+            self._tell(MotionState.FAILED, str(error), **findings(error, len(plan.moves)))
         except Exception as error:
-            self._fail(
-                MotionReason.INTERNAL_ERROR,
-                f"a defect: {error!r}; the node's log has the traceback",
-            )
+            sentence = f"a defect: {error!r}; the node's log has the traceback"
+            self._tell(MotionState.FAILED, sentence, reason=MotionReason.INTERNAL_ERROR)
             raise
 
     def _plan_and_run(self, plan: Plan, stop: threading.Event) -> None:
@@ -284,9 +265,6 @@ class Executive:
     def _tell(self, state: MotionState, message: str, **changes: Any) -> None:
         self._report = replace(self._report, state=state, message=message, **changes)
         self._publish(self._report)
-
-    def _fail(self, reason: MotionReason, message: str, **changes: Any) -> None:
-        self._tell(MotionState.FAILED, message, reason=reason, **changes)
 
     def _tell_waiting(self, sentence: str) -> None:
         """Something has been awaited for a while, or no more if there is no sentence."""
