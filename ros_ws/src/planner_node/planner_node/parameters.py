@@ -77,8 +77,8 @@ PARAMETERS: Final = (
     ParameterSpec(
         "motion_silence_timeout",
         _DEFAULTS.motion_silence_timeout,
-        "A plan is given up when motion_status is silent for this long; the motion node has as long "
-        "once more to come back, and then the scene is looked at again [s, wall time].",
+        "A plan is given up when motion_status is silent for this long; the motion node has as "
+        "long once more to come back, and then the scene is looked at again [s, wall time].",
         0.1,
         3600.0,
     ),
