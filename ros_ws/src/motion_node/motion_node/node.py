@@ -56,10 +56,13 @@ class MotionNode(Node):
             before this node started are ignored.
         joint_states (sensor_msgs/JointState)
         robot_description (std_msgs/String, latched): URDF
+        diagnostics (diagnostic_msgs/DiagnosticArray): who lives; with two nodes that do the work
+            of one, plans are refused with the reason CONFLICT
     Publishes:
         joint_trajectory (trajectory_msgs/JointTrajectory): starts at once, replaces the running one
         motion_status (tamp_interfaces/MotionStatus, the newest ones are kept for late listeners):
             at every change, and once a second
+        diagnostics (diagnostic_msgs/DiagnosticArray): that it lives
 
     Callbacks only store what they hear; one worker thread carries out plans.
     """
