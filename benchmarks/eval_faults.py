@@ -26,6 +26,7 @@ from typing import Any, Final
 import rclpy
 from faults.catalogue import CATALOGUE, UnknownFaultError, faults_named
 from faults.fault import Fault, Phase
+from faults.numbered import numbered_table, tests_that_name
 from faults.report import command_of, dictionary, make_rows, problems
 from faults.setting import Graph, Setting
 from faults.topics import groups_of
@@ -39,6 +40,7 @@ from tamp_bringup.processes import use_own_domain
 from tamp_bringup.scene_observer import SimulationError
 
 FIRST_SEED: Final = 1000
+TESTS: Final = Path(__file__).resolve().parent.parent / "tests"
 FOLDER: Final = Path("runs") / "eval_faults"
 #: The kinds of a quick run: one that needs no relay, and two that share theirs.
 QUICK: Final = ("cancelled", "joints-lost-2s", "trajectory-nan")
@@ -181,13 +183,19 @@ def main() -> int:
         for trial in trials:
             print(json.dumps({**trial, "logs": "…"}, indent=1, ensure_ascii=False))
         return 1 if bad else 0
+    entries = dictionary(trials)
+    details = {
+        "kinds": len(CATALOGUE),
+        "numbered": numbered_table(entries, tests_that_name(TESTS)),
+        "dictionary": entries,
+    }
     seconds = sum(trial["trial_seconds"] for trial in trials)
     path = write_result(
         "faults",
         f"make eval-faults TRIALS={options.trials}",
         rows,
         max(seconds, time.monotonic() - started),
-        {"dictionary": dictionary(trials), "kinds": len(CATALOGUE)},
+        details,
     )
     print(f"written to {path}")
     return 0

@@ -123,8 +123,26 @@ def section(result: Mapping[str, Any], plots: Sequence[str]) -> list[str]:
     ]
     for plot in plots:
         lines += ["", f"![{result['name']}]({plot})"]
-    if entries := result.get("details", {}).get("dictionary"):
+    details = result.get("details", {})
+    if numbered := details.get("numbered"):
+        lines += ["", *numbered_table(numbered)]
+    if entries := details.get("dictionary"):
         lines += ["", *dictionary_table(entries)]
+    return lines
+
+
+def numbered_table(numbered: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The faults that trials by hand had found: what each was and is, and how many tests it has."""
+    lines = [
+        "Faults that trials by hand had found; the tests of each have `fault_NUMBER` in their "
+        "names.",
+        "",
+        "| fault | was | is | trials here | tests |",
+        "|---:|---|---|---|---:|",
+    ]
+    for item in numbered:
+        cells = (item["number"], item["was"], item["now"], item["trials"], len(item["tests"]))
+        lines.append("| " + " | ".join(_cell(str(cell)) for cell in cells) + " |")
     return lines
 
 

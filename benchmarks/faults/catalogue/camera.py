@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from faults import damages as d
+from faults import picture_damages as p
 from faults.fault import CAMERA_PHASES, Fault, Injection, Phase, Words
 from faults.injections import All, Damaged, Restarted
 from faults.modes import Change, Delay, Drop, Freeze, FreezeContent, Repeat, Swap
@@ -79,109 +80,109 @@ FAULTS = (
     ),
     # Pictures
     _lasting(
-        "image-black", "the colour image is black", (IMAGE,), Change(d.pixels(d.black)),
+        "image-black", "the colour image is black", (IMAGE,), Change(p.pixels(p.black)),
         "dark", "black", "colour", "exposure",
     ),
     _lasting(
-        "image-white", "the colour image is white", (IMAGE,), Change(d.pixels(d.white)),
+        "image-white", "the colour image is white", (IMAGE,), Change(p.pixels(p.white)),
         "bright", "white", "colour", "exposure",
     ),
     _lasting(
-        "image-noise", "the colour image is noise", (IMAGE,), Change(d.pixels(d.noise)),
+        "image-noise", "the colour image is noise", (IMAGE,), Change(p.pixels(p.noise)),
         "colour", "reproduces", "noise", IMAGE,
     ),
     _lasting(
-        "image-grainy", "noise of 20 grey levels", (IMAGE,), Change(d.pixels(d.grainy)),
+        "image-grainy", "noise of 20 grey levels", (IMAGE,), Change(p.pixels(p.grainy)),
         "colour", "reproduces", "noise", IMAGE,
     ),
     _lasting(
         "image-mirrored", "colour is mirrored, depth and segmentation are not", (IMAGE,),
-        Change(d.pixels(d.mirrored)), "colour", "reproduces", IMAGE, "same pixels",
+        Change(p.pixels(p.mirrored)), "colour", "reproduces", IMAGE, "same pixels",
     ),
     _lasting(
         "encoding-wrong", "the colour image is called bgr8", (IMAGE,),
-        Change(d.of_encoding("bgr8")), "encoding",
+        Change(p.of_encoding("bgr8")), "encoding",
     ),
     _lasting(
         "image-small", "the colour image is 128x128, the others are not", (IMAGE,),
-        Change(d.of_size(128)), "128x128",
+        Change(p.of_size(128)), "128x128",
     ),
-    _lasting("image-cut", "half of the colour image's data is lost", (IMAGE,), Change(d.cut_off),
+    _lasting("image-cut", "half of the colour image's data is lost", (IMAGE,), Change(p.cut_off),
              "bytes"),
     # Depth
     _lasting(
-        "depth-millimetres", "depth in millimetres", (DEPTH,), Change(d.pixels(d.millimetres)),
+        "depth-millimetres", "depth in millimetres", (DEPTH,), Change(p.pixels(p.millimetres)),
         "depth",
     ),
     _lasting(
-        "depth-nan", "depth without a value", (DEPTH,), Change(d.pixels(d.nothing_but_nan)), "depth"
+        "depth-nan", "depth without a value", (DEPTH,), Change(p.pixels(p.nothing_but_nan)), "depth"
     ),
     _lasting(
-        "depth-zero", "depth is zero everywhere", (DEPTH,), Change(d.pixels(d.black)), "depth"
+        "depth-zero", "depth is zero everywhere", (DEPTH,), Change(p.pixels(p.black)), "depth"
     ),
     _lasting(
-        "depth-holes", "three of ten pixels have no depth", (DEPTH,), Change(d.pixels(d.holes)),
+        "depth-holes", "three of ten pixels have no depth", (DEPTH,), Change(p.pixels(p.holes)),
         "depth",
     ),
     _lasting(
-        "depth-offset", "depth is 5 cm too small", (DEPTH,), Change(d.pixels(d.nearer(0.05))),
+        "depth-offset", "depth is 5 cm too small", (DEPTH,), Change(p.pixels(p.nearer(0.05))),
         "depth", "extrinsics", "calibrat",
     ),
     # Segmentation
     Fault(
         "labels-shuffled", "other numbers for the same blocks, for good",
-        Damaged((LABELS,), Change(d.pixels(d.labels_shuffled))), CAMERA_PHASES,
+        Damaged((LABELS,), Change(p.pixels(p.labels_shuffled))), CAMERA_PHASES,
         (("segmentation",),), transient=True,
     ),
     _lasting(
         "labels-scattered", "every pixel of a block has the label of some block", (LABELS,),
-        Change(d.pixels(d.labels_scattered)), "segmentation", "label", "reproduces",
+        Change(p.pixels(p.labels_scattered)), "segmentation", "label", "reproduces",
     ),
     _lasting(
         "labels-merged", "one label for all blocks", (LABELS,),
-        Change(d.pixels(d.labels_merged)), "segmentation", "label", "unknown", "cannot be seen",
+        Change(p.pixels(p.labels_merged)), "segmentation", "label", "unknown", "cannot be seen",
         "no ", "beside",
     ),
     _lasting(
-        "labels-none", "the detector finds nothing", (LABELS,), Change(d.pixels(d.black)),
+        "labels-none", "the detector finds nothing", (LABELS,), Change(p.pixels(p.black)),
         "no block", "not a block",
     ),
     Fault(
         "block-overlooked", "the detector overlooks one block",
-        Damaged((LABELS,), Change(d.pixels(d.lost_label))), CAMERA_PHASES,
+        Damaged((LABELS,), Change(p.pixels(p.lost_label))), CAMERA_PHASES,
         (("not a block", "not seen", "cannot be seen", "unknown", "no ", "in the air"),),
     ),
     # What stands in between, what is calibrated
     Fault(
         "camera-half-covered", "something stands before the left half of the camera",
         All((
-            Damaged((IMAGE,), Change(d.pixels(d.covered(60)))),
-            Damaged((DEPTH,), Change(d.pixels(d.covered(0.3)))),
-            Damaged((LABELS,), Change(d.pixels(d.covered(0)))),
+            Damaged((IMAGE,), Change(p.pixels(p.covered(60)))),
+            Damaged((DEPTH,), Change(p.pixels(p.covered(0.3)))),
+            Damaged((LABELS,), Change(p.pixels(p.covered(0)))),
         )),
         CAMERA_PHASES, (("hides", "hidden"),),
     ),
     _passing(
         "camera-covered-4s", "something stands before half of the camera for 4 s",
         All((
-            Damaged((IMAGE,), Change(d.pixels(d.covered(60)))),
-            Damaged((DEPTH,), Change(d.pixels(d.covered(0.3)))),
-            Damaged((LABELS,), Change(d.pixels(d.covered(0)))),
+            Damaged((IMAGE,), Change(p.pixels(p.covered(60)))),
+            Damaged((DEPTH,), Change(p.pixels(p.covered(0.3)))),
+            Damaged((LABELS,), Change(p.pixels(p.covered(0)))),
         )),
         4.0, CAMERA_PHASES,
     ),
     _lasting("info-uncalibrated", "camera_info without intrinsics", (INFO,),
-             Change(d.without_intrinsics), "intrinsics", "calibrat"),
-    _lasting("info-distorted", "the picture is not rectified", (INFO,), Change(d.distorted),
+             Change(p.without_intrinsics), "intrinsics", "calibrat"),
+    _lasting("info-distorted", "the picture is not rectified", (INFO,), Change(p.distorted),
              "distort", "rectif"),
     _lasting("extrinsics-invalid", "a quaternion of zeros", (EXTRINSICS,),
-             Change(d.no_rotation), "extrinsics"),
+             Change(p.no_rotation), "extrinsics"),
     _lasting("extrinsics-4cm-aside", "the calibration is 4 cm off to the side", (EXTRINSICS,),
-             Change(d.moved_by(y=0.04)), "extrinsics", "calibrat"),
+             Change(p.moved_by(y=0.04)), "extrinsics", "calibrat"),
     _lasting("extrinsics-3cm-high", "the calibration is 3 cm too high", (EXTRINSICS,),
-             Change(d.moved_by(z=0.03)), "extrinsics", "calibrat"),
+             Change(p.moved_by(z=0.03)), "extrinsics", "calibrat"),
     _lasting("extrinsics-turned", "the calibration is turned by 8 degrees", (EXTRINSICS,),
-             Change(d.turned_by(8.0)), "extrinsics", "calibrat"),
+             Change(p.turned_by(8.0)), "extrinsics", "calibrat"),
     Fault(
         "extrinsics-never", "perception starts and no extrinsics arrive",
         All((Damaged((EXTRINSICS,), Drop()), Restarted("perception_node"))),
@@ -190,7 +191,7 @@ FAULTS = (
     # What no camera can tell
     Fault(
         "colours-exchanged", "red and blue are exchanged: bgr8 that is called rgb8",
-        Damaged((IMAGE,), Change(d.pixels(d.red_and_blue_exchanged))), CAMERA_PHASES,
+        Damaged((IMAGE,), Change(p.pixels(p.red_and_blue_exchanged))), CAMERA_PHASES,
         (("unknown", "cannot be seen", "not seen", "no "),),
         unseen="blocks of exchanged colours are other blocks to every camera",
     ),

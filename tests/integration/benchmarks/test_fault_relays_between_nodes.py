@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from faults import damages
+from faults import damages, picture_damages
 from faults.modes import Change, Delay, Drop
 from faults.relay import Relays, read
 from faults.topics import EXTRINSICS, JOINTS, TOPICS
@@ -87,7 +87,7 @@ def test_a_lasting_message_is_damaged_and_mended_for_those_who_have_it(ros_conte
     publisher.publish(TransformStamped())
     with Relays([topic], context=ros_context.context) as relays:
         ros_context.wait_until(lambda: heard, what="the calibration")
-        relays.set(EXTRINSICS, Change(damages.moved_by(y=0.25)))
+        relays.set(EXTRINSICS, Change(picture_damages.moved_by(y=0.25)))
         ros_context.wait_until(lambda: heard[-1] == 0.25, what="the damaged one")
         relays.clear()
         ros_context.wait_until(lambda: heard[-1] == 0.0, what="the right one again")

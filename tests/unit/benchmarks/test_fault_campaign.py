@@ -3,15 +3,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
+import write_results_page
 from eval_faults import FIRST_SEED, plan_tasks, seed_of
 from faults.askers import Answer
 from faults.catalogue import CATALOGUE, UnknownFaultError, faults_named
 from faults.fault import Ending, Fault, Phase, names_the_cause
 from faults.injections import Cancelled
 from faults.judge import arm_untruth, ending_of, holds
+from faults.numbered import NUMBERED, numbered_table
+from faults.numbered import tests_that_name as by_number
 from faults.report import command_of, dictionary, make_rows, problems
 from faults.small_tasks import (
     first_layout,
@@ -20,7 +24,6 @@ from faults.small_tasks import (
     two_blocks_swapped,
     without_top,
 )
-from write_results_page import dictionary_table
 
 from scene_graph import Place, SceneGraph, SceneObject, Stacks, up_relations
 
@@ -192,6 +195,34 @@ def test_dictionary_joins_what_is_alike_and_says_how_to_run_what_is_bad_again() 
     entries = dictionary([trial(trial=0), trial(trial=1), trial(Ending.HUNG, trial=2, seed=1002)])
     assert [(entry["ending"], entry["n"]) for entry in entries] == [("reached", 2), ("hung", 1)]
     assert entries[1]["again"].endswith("SEED=1002")
-    table = "\n".join(dictionary_table(entries))
+    table = "\n".join(write_results_page.dictionary_table(entries))
     assert "| **depth-lost**: no depth image arrives | perceive | reached | 2 |" in table
     assert "SEED=1002" in table
+
+
+# The numbered faults
+
+
+def test_every_numbered_fault_says_what_it_was_and_is_and_knows_its_kinds() -> None:
+    assert [item.number for item in NUMBERED] == list(range(1, 18))
+    for item in NUMBERED:
+        assert item.was and item.now
+        assert all(faults_named(kind) for kind in item.kinds)
+
+
+def test_numbered_faults_have_the_tests_that_name_them(tmp_path: Path) -> None:
+    (tmp_path / "test_it.py").write_text(
+        "def test_fault_1_a(): pass\n"
+        "def test_b():\n    'holds fault_12 and fault_1'\n"
+        "def helper_fault_3(): pass\n"
+    )
+    assert by_number(tmp_path) == {1: ["test_b", "test_fault_1_a"], 12: ["test_b"]}
+
+
+def test_numbered_table_counts_the_trials_of_its_kinds() -> None:
+    entries = dictionary([trial(fault="fingers-stay-open"), trial(fault="crowd")])
+    table = numbered_table(entries, {4: ["test_fault_4"]})
+    (fingers,) = [item for item in table if item["number"] == 4]
+    assert fingers["trials"] == "1 reached" and fingers["tests"] == ["test_fault_4"]
+    page = "\n".join(write_results_page.numbered_table(table))
+    assert "| 1 reached | 1 |" in page

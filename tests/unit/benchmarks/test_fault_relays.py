@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builtin_interfaces.msg import Duration
-from faults import damages
+from faults import damages, picture_damages
 from faults.fault import Injection
 from faults.modes import Change, Delay, Drop, Freeze, FreezeContent, Repeat, Swap
 from faults.relay import Handler, Mode, read, write
@@ -133,26 +133,26 @@ def test_fingers_are_the_last_two_joints() -> None:
 @pytest.mark.parametrize(
     ("change", "expected"),
     [
-        (damages.black, [[0.0, 0.0]]),
-        (damages.millimetres, [[1000.0, 2000.0]]),
-        (damages.mirrored, [[2.0, 1.0]]),
-        (damages.nearer(0.5), [[0.5, 1.5]]),
-        (damages.covered(0.25), [[0.25, 2.0]]),
+        (picture_damages.black, [[0.0, 0.0]]),
+        (picture_damages.millimetres, [[1000.0, 2000.0]]),
+        (picture_damages.mirrored, [[2.0, 1.0]]),
+        (picture_damages.nearer(0.5), [[0.5, 1.5]]),
+        (picture_damages.covered(0.25), [[0.25, 2.0]]),
     ],
 )
 def test_pixels_change_and_the_message_stays_an_image(
-    change: damages.Pixels, expected: list[list[float]]
+    change: picture_damages.Pixels, expected: list[list[float]]
 ) -> None:
     header = Header(stamp=stamp_from_nanoseconds(7))
     image = image_from_array(np.array([[1.0, 2.0]], np.float32), "32FC1", header)
-    damaged = damages.pixels(change)(image)
+    damaged = picture_damages.pixels(change)(image)
     assert array_from_image(damaged, "32FC1").tolist() == expected
     assert nanoseconds(damaged.header.stamp) == 7
 
 
 def test_shuffled_labels_still_tell_blocks_apart() -> None:
     labels = np.array([[0, 1, 2, 5]], np.uint16)
-    assert np.asarray(damages.labels_shuffled(labels)).tolist() == [[0, 5, 4, 1]]
+    assert np.asarray(picture_damages.labels_shuffled(labels)).tolist() == [[0, 5, 4, 1]]
 
 
 def test_relays_stand_before_the_listeners_only() -> None:
