@@ -34,6 +34,7 @@ from planner_node.search import (
 )
 from planner_node.search.a_star import moves_left
 from planner_node.search.limits import POLL_INTERVAL
+from planner_node.search.patterns import pattern_space
 from scene_graph import Relation, Stacks
 
 FOUR = NAMES[:4]
@@ -156,17 +157,50 @@ def test_blocks_that_the_goal_does_not_mention_are_not_told_apart() -> None:
     initial: Stacks = (("red_box", "blue_box", *NAMES[3:]), ("green_box",), ())
     on_two = (Relation("red_box", "up", "stack0"), Relation("red_box", "up", "stack1"))
     with pytest.raises(UnreachableError) as caught:
-        search(initial, Goal(on_two))
+        search(initial, Goal(on_two), algorithm="breadth_first")
     # One block among six like it: 6 places times C(8, 2) heights of three stacks.
     assert caught.value.expanded == 6 * 28
+
+
+def test_what_no_arrangement_fulfils_is_proven_without_a_search() -> None:
+    names = tuple(f"block{index}" for index in range(12))
+    in_a_circle = (
+        Relation(names[0], "left", names[1]),
+        Relation(names[1], "left", names[2]),
+        Relation(names[2], "left", names[3]),
+    )
+    with pytest.raises(UnreachableError, match="no arrangement of these blocks") as caught:
+        search((names, (), ()), Goal(in_a_circle))
+    assert caught.value.expanded == 0
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_every_algorithm_stops_when_it_is_cancelled(algorithm: str) -> None:
+    rng = random.Random(1)
+    names = tuple(f"block{index}" for index in range(9))
+    initial, target = random_state(names, 3, rng), random_state(names, 3, rng)
+    with pytest.raises(SearchCancelledError):
+        search(initial, complete_goal(target), cancelled=lambda: True, algorithm=algorithm)
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_the_search_is_deterministic(algorithm: str) -> None:
+    rng = random.Random(2)
+    names = NAMES[:5]
+    initial, target = random_state(names, 3, rng), random_state(names, 3, rng)
+    goal = Goal(complete_goal(target).relations[1:4])
+    first = search(initial, goal, algorithm=algorithm)
+    pattern_space.cache_clear()
+    again = search(initial, goal, algorithm=algorithm)
+    assert (first.moves, first.expanded) == (again.moves, again.expanded)
 
 
 def test_the_bound_is_told_from_a_proof() -> None:
     rng = random.Random(1)
     initial, target = random_state(NAMES, 3, rng), random_state(NAMES, 3, rng)
     with pytest.raises(SearchLimitError) as caught:
-        make_plan(initial, complete_goal(target), max_expansions=10)
-    assert caught.value.expanded == 10
+        make_plan(initial, complete_goal(target), max_expansions=3)
+    assert caught.value.expanded == 3
     assert "max_expansions" in str(caught.value)
 
 
@@ -181,7 +215,7 @@ def test_a_search_can_be_cancelled_soon() -> None:
         return polls > 2
 
     with pytest.raises(SearchCancelledError) as caught:
-        search((NAMES, (), ()), goal, cancelled=cancelled)
+        search((NAMES, (), ()), goal, cancelled=cancelled, algorithm="breadth_first")
     assert caught.value.expanded == 2 * POLL_INTERVAL
 
 

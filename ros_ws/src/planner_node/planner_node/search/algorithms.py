@@ -10,25 +10,23 @@ from .a_star import a_star
 from .both_ends import both_ends
 from .breadth_first import breadth_first
 from .limits import Limits
+from .patterns_both_ends import patterns_both_ends
 from .state import Problem, State
 
-#: Gives a shortest path from the problem's start to a goal, both included. It tells the limits of
-#: every expansion, and raises ``limits.unreachable()`` when there is no path.
+#: Gives a path from the problem's start to a goal, both included: a shortest one, unless it tells
+#: ``limits.prove_at_least`` what is proven. It tells the limits of every expansion, and raises
+#: ``limits.unreachable()`` when there is no path.
 SearchAlgorithm = Callable[[Problem, Limits], list[State]]
 
 AUTO: Final = "auto"
 
 
-def auto(problem: Problem, limits: Limits) -> list[State]:
-    """From both ends where the goal is complete, breadth-first elsewhere."""
-    return (breadth_first if problem.target is None else both_ends)(problem, limits)
-
-
 ALGORITHMS: Final[dict[str, SearchAlgorithm]] = {
-    AUTO: auto,
+    AUTO: patterns_both_ends,
     "breadth_first": breadth_first,
     "both_ends": both_ends,
     "a_star": a_star,
+    "patterns": patterns_both_ends,
 }
 
 

@@ -22,6 +22,8 @@ class Limits:
 
     Attributes:
         expanded: number of states whose successors were generated.
+        at_least: moves that every plan has, as far as the algorithm has proven it; None: it has
+            told nothing, and what it finds is shortest.
     """
 
     def __init__(
@@ -32,6 +34,7 @@ class Limits:
         cancelled: Callable[[], bool] = lambda: False,
     ) -> None:
         self.expanded = 0
+        self.at_least: int | None = None
         self._initial = initial
         self._goal = goal
         self._max_expansions = max_expansions
@@ -50,19 +53,65 @@ class Limits:
             SearchCancelledError: the caller wants no answer any more; asked now and then.
         """
         if self.expanded >= self._max_expansions:
-            raise SearchLimitError(
-                f"'{self._goal}' was not reached within {self._max_expansions} expanded states; "
-                "raise max_expansions, or ask for less",
-                self.expanded,
-                self.seconds(),
-            )
-        if self.expanded % POLL_INTERVAL == 0 and self._cancelled():
+            raise self._exhausted()
+        if self.expanded % POLL_INTERVAL == 0:
+            self.poll()
+        self.expanded += 1
+
+    def count_expansions(self, number: int) -> int:
+        """As :meth:`count_expansion` for many states at once; how many of them may be expanded.
+
+        To be called at least every few milliseconds: it looks at ``cancelled`` every time.
+        """
+        self.poll()
+        if self.expanded >= self._max_expansions:
+            raise self._exhausted()
+        allowed = min(number, self._max_expansions - self.expanded)
+        self.expanded += allowed
+        return allowed
+
+    def poll(self) -> None:
+        """Raises SearchCancelledError if the caller wants no answer any more."""
+        if self._cancelled():
             raise SearchCancelledError(
                 f"the search was cancelled after {self.expanded} states",
                 self.expanded,
                 self.seconds(),
             )
-        self.expanded += 1
+
+    def prove_at_least(self, moves: int) -> None:
+        """To be told by algorithms that know a bound: no plan has fewer moves."""
+        self.at_least = max(moves, self.at_least or 0)
+
+    def of_a_part(self) -> PartLimits:
+        """For the search of a part of the problem, whose expansions count here."""
+        return PartLimits(self)
+
+    def not_found(self) -> SearchLimitError:
+        """To be raised by an algorithm that gives up without a plan and without a proof."""
+        return SearchLimitError(
+            f"no plan to '{self._goal}' was found after {self.expanded} expanded states, and "
+            "none was ruled out; another algorithm may find one, or ask for less",
+            self.expanded,
+            self.seconds(),
+        )
+
+    def impossible(self) -> UnreachableError:
+        """To be raised when no arrangement of the blocks at all is a goal."""
+        return UnreachableError(
+            f"no sequence of moves leads from {format_stacks(self._initial)} to '{self._goal}': "
+            f"no arrangement of these blocks on {len(self._initial)} places fulfils it",
+            self.expanded,
+            self.seconds(),
+        )
+
+    def _exhausted(self) -> SearchLimitError:
+        return SearchLimitError(
+            f"'{self._goal}' was not reached within {self._max_expansions} expanded states; "
+            "raise max_expansions, or ask for less",
+            self.expanded,
+            self.seconds(),
+        )
 
     def unreachable(self) -> UnreachableError:
         """To be raised when every reachable state was expanded and none is a goal."""
@@ -72,3 +121,26 @@ class Limits:
             self.expanded,
             self.seconds(),
         )
+
+
+class PartLimits(Limits):
+    """Those of a part of a search: counts for the whole, and what is proven stays in the part."""
+
+    def __init__(self, whole: Limits) -> None:
+        super().__init__(whole._initial, whole._goal)
+        self._whole = whole
+
+    def count_expansion(self) -> None:
+        """See :class:`Limits`."""
+        self._whole.count_expansion()
+        self.expanded += 1
+
+    def count_expansions(self, number: int) -> int:
+        """See :class:`Limits`."""
+        allowed = self._whole.count_expansions(number)
+        self.expanded += allowed
+        return allowed
+
+    def poll(self) -> None:
+        """See :class:`Limits`."""
+        self._whole.poll()

@@ -11,6 +11,7 @@ from scene_graph import Move, Stacks, apply_move
 
 from ..goals.contradictions import check_contradictions
 from ..goals.goal import Goal
+from ..validator import validate_plan
 from .algorithms import AUTO, algorithm_named
 from .limits import DEFAULT_MAX_EXPANSIONS, Limits
 from .state import Problem, State
@@ -18,19 +19,21 @@ from .state import Problem, State
 
 @dataclass(frozen=True)
 class SearchResult:
-    """A shortest plan.
+    """A plan; a shortest one but for algorithms that say otherwise by ``bound``.
 
     Attributes:
         moves: empty if the goal already holds.
         states: the initial state and the one after each move.
         expanded: number of states whose successors were generated.
         seconds: wall time.
+        bound: how many times as long as a shortest plan it is at most, proven; 1.0: it is shortest.
     """
 
     moves: tuple[Move, ...]
     states: tuple[Stacks, ...]
     expanded: int
     seconds: float
+    bound: float = 1.0
 
 
 def make_plan(
@@ -40,14 +43,17 @@ def make_plan(
     cancelled: Callable[[], bool] = lambda: False,
     algorithm: str = AUTO,
 ) -> SearchResult:
-    """A shortest plan; see :func:`search` for the arguments.
+    """A plan that an independent check found right; see :func:`search` for the arguments.
 
     Raises:
+        InvalidPlanError: the search is defective; nothing of its plan may be used.
         ContradictoryGoalError: the goal's relations exclude one another.
         UnreachableError, SearchLimitError, SearchCancelledError: see :func:`search`.
     """
     check_contradictions(goal, len(initial))
-    return search(initial, goal, max_expansions, cancelled, algorithm)
+    found = search(initial, goal, max_expansions, cancelled, algorithm)
+    validate_plan(initial, goal.relations, found.moves, found.states)
+    return found
 
 
 def search(
@@ -78,7 +84,8 @@ def search(
     states = [initial]
     for move in moves:
         states.append(apply_move(states[-1], move))
-    return SearchResult(moves, tuple(states), limits.expanded, limits.seconds())
+    bound = len(moves) / limits.at_least if moves and limits.at_least else 1.0
+    return SearchResult(moves, tuple(states), limits.expanded, limits.seconds(), bound)
 
 
 def _move_between(before: State, after: State) -> Move:

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An independent check of plans: every move is carried out with plain lists, then the goal is read.
+
+It shares nothing with the search, so that a defect there cannot hide itself. It stands between the
+search and everything that is published.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from scene_graph import ABOVE, LEFT, PREDICATES, UP, Move, Relation, Spot, base_index
+
+from .errors import PlannerError
+
+
+class InvalidPlanError(PlannerError):
+    """A plan is not one: ``step`` is the move that fails, from 0, or the number of all moves."""
+
+    def __init__(self, problem: str, step: int) -> None:
+        super().__init__(problem)
+        self.step = step
+
+
+def validate_plan(
+    initial: Sequence[Sequence[str]],
+    relations: Iterable[Relation],
+    moves: Sequence[Move],
+    states: Sequence[Sequence[Sequence[str]]] | None = None,
+) -> None:
+    """Raises InvalidPlanError unless the moves lead from a state to one that fulfils all relations.
+
+    Args:
+        states: those that the plan says it goes through, the initial one first; None: it does not.
+    """
+    stacks = [list(stack) for stack in initial]
+    if states is not None and len(states) != len(moves) + 1:
+        raise InvalidPlanError(
+            f"a plan of {len(moves)} moves comes with {len(states)} states", len(moves)
+        )
+    _compare(stacks, states, 0)
+    for step, move in enumerate(moves):
+        known = range(len(stacks))
+        if move.source not in known or move.target not in known:
+            raise InvalidPlanError(f"move {step + 1}, {move}, names no place of the table", step)
+        if move.source == move.target:
+            raise InvalidPlanError(f"move {step + 1}, {move}, ends where it starts", step)
+        if not stacks[move.source]:
+            raise InvalidPlanError(f"move {step + 1}, {move}, takes from an empty place", step)
+        stacks[move.target].append(stacks[move.source].pop())
+        _compare(stacks, states, step + 1)
+    for relation in relations:
+        if not _holds(relation, stacks):
+            raise InvalidPlanError(
+                f"after the last move '{relation.words}' is not true", len(moves)
+            )
+
+
+def _compare(
+    stacks: list[list[str]], states: Sequence[Sequence[Sequence[str]]] | None, step: int
+) -> None:
+    if states is not None and [list(stack) for stack in states[step]] != stacks:
+        raise InvalidPlanError(
+            f"the state after {step} moves is not the one that they lead to", step
+        )
+
+
+def _holds(relation: Relation, stacks: list[list[str]]) -> bool:
+    subject, object_ = (_spot(name, stacks) for name in (relation.subject, relation.object))
+    if subject is None or object_ is None:
+        return False
+    if relation.predicate == UP:
+        return subject == (object_[0], object_[1] + 1)
+    if relation.predicate == ABOVE:
+        return subject[0] == object_[0] and subject[1] > object_[1]
+    if relation.predicate == LEFT:
+        return subject[0] < object_[0]
+    return PREDICATES[relation.predicate].holds(Spot(*subject), Spot(*object_))
+
+
+def _spot(name: str, stacks: list[list[str]]) -> tuple[int, int] | None:
+    place = base_index(name)
+    if place is not None:
+        return (place, -1) if place < len(stacks) else None
+    for index, stack in enumerate(stacks):
+        if name in stack:
+            return index, stack.index(name)
+    return None
