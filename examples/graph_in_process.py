@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The four nodes in one process, and a goal: how integration tests and notebooks do it.
 
-python examples/graph_in_process.py "red on green"
+Run it as
+
+    python examples/graph_in_process.py "red on green"
 """
 
 from __future__ import annotations

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Moves in, a trajectory of all joints out, plotted.
 
-python examples/optimise_a_plan.py
+Run it as
+
+    python examples/optimise_a_plan.py
 """
 
 from __future__ import annotations

@@ -4,6 +4,8 @@
 One entry of ``scene_graph.PREDICATES`` is all: goals are parsed with its phrases, the search tests
 states by its meaning, and people are told its first phrase. In the project itself the entry stands
 in scene_graph/predicates.py.
+
+    python examples/own_predicate.py
 """
 
 from __future__ import annotations

@@ -4,6 +4,8 @@
 Anything with this signature can be given to ``Perception``; in the project itself a segmenter is a
 file in perception_node/segment/. This one is ten lines long and knows saturated blocks before a
 grey table only.
+
+    python examples/own_segmenter.py
 """
 
 from __future__ import annotations

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A state and a goal in words in, a shortest plan out; or a sentence why there is none.
 
-python examples/plan_from_a_scene.py "red on blue, green left of red"
+Run it as
+
+    python examples/plan_from_a_scene.py "red on blue, green left of red"
 """
 
 from __future__ import annotations

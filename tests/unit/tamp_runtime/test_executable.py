@@ -76,3 +76,40 @@ def test_sigint_while_the_program_is_imported_ends_it_with_the_code_for_that(
     process.send_signal(signal.SIGINT)
     _, stderr = process.communicate(timeout=120.0)
     assert (process.returncode, stderr) == (130, "")
+
+
+def run_program(tmp_path: Path, program: str) -> subprocess.CompletedProcess[str]:
+    """What becomes of an executable whose module has this text."""
+    (tmp_path / "program.py").write_text(program)
+    code = "import sys; from tamp_runtime.executable import run_module as r; sys.exit(r('program'))"
+    return subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        timeout=120.0,
+        check=False,
+        env={**os.environ, "PYTHONPATH": f"{tmp_path}:{os.environ['PYTHONPATH']}"},
+    )
+
+
+@pytest.mark.parametrize(
+    ("module", "advice"),
+    [
+        ("casadi", "-m pip install casadi'"),
+        ("pybullet_data", "-m pip install pybullet'"),
+        ("torch", "-m pip install torch'"),
+        ("tamp_interfaces", "source the workspace's setup"),
+        ("cv2", "rosdep install --from-paths ros_ws/src --ignore-src"),
+    ],
+)
+@pytest.mark.parametrize("late", [False, True], ids=["at once", "when run"])
+def test_fault_14_a_missing_module_is_one_sentence_that_says_how_to_get_it(
+    tmp_path: Path, module: str, advice: str, late: bool
+) -> None:
+    hide = f"import sys\nsys.modules[{module!r}] = None\n"
+    program = "def run():\n    import {0}.part\n" if late else "import {0}\n"
+    done = run_program(tmp_path, hide + program.format(module))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("cannot start: ") and done.stderr.count("\n") == 1
+    assert f"has no Python module {module};" in done.stderr
+    assert advice in done.stderr
