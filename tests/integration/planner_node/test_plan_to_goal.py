@@ -84,7 +84,7 @@ def test_a_goal_that_holds_is_already_true_and_nothing_is_published(bench: Any) 
     [
         ("red on blue, green", Status.INVALID_GOAL, "offset 13 ('green')"),
         ("red on purple", Status.UNKNOWN_OBJECT, "blue_box, green_box, red_box"),
-        ("red on stack3", Status.CONTRADICTORY_GOAL, "stack3 does not exist"),
+        ("red on stack3", Status.UNKNOWN_OBJECT, "there is no place 'stack3'"),
     ],
 )
 def test_a_bad_goal_is_refused_with_a_sentence(
