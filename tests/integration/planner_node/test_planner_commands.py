@@ -62,6 +62,8 @@ def test_an_achieved_goal_shows_its_stages(make_bench: Any, start: Start) -> Non
 def test_ctrl_c_cancels_the_goal_and_waits_for_the_arm(make_bench: Any, start: Start) -> None:
     bench = make_bench(run_until_stopped)
     process = start(PACKAGE, "achieve_goal", GOAL)
+    assert process.stdout is not None
+    process.stdout.readline()  # from now on it knows that the planner has the goal
     bench.ros.wait_until(lambda: bench.motion.plans, PROCESS_TIMEOUT)
     process.send_signal(signal.SIGINT)
     code, _, stderr = finish(process)
