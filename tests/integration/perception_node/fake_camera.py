@@ -8,6 +8,7 @@ from typing import Any
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
 from sensor_msgs.msg import CameraInfo, Image
 from tamp_interfaces.msg import SceneGraph
 from tamp_runtime.qos import LATCHED, NEWEST
@@ -28,15 +29,21 @@ TOPICS = {
 class FakeCamera:
     """A node's publishers of a camera, and the scene graphs that it heard."""
 
-    def __init__(self, ros_context: Any, node: Node) -> None:
+    def __init__(
+        self,
+        ros_context: Any,
+        node: Node,
+        images: QoSProfile = NEWEST,
+        extrinsics: QoSProfile = LATCHED,
+    ) -> None:
         self.node = node
         self.graphs: list[SceneGraph] = []
         self._wait_until = ros_context.wait_until
         self._seconds = 100
         self.publishers = [
-            node.create_publisher(kind, topic, NEWEST) for topic, kind in TOPICS.items()
+            node.create_publisher(kind, topic, images) for topic, kind in TOPICS.items()
         ]
-        self._extrinsics = node.create_publisher(TransformStamped, "camera/extrinsics", LATCHED)
+        self._extrinsics = node.create_publisher(TransformStamped, "camera/extrinsics", extrinsics)
         node.create_subscription(SceneGraph, "scene_graph", self.graphs.append, NEWEST)
 
     @property

@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from fake_camera import TOPICS, FakeCamera
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from ros2_run import Start, finish
 from sensor_msgs.msg import Image
 from tamp_interfaces.msg import SceneGraph
@@ -139,6 +141,84 @@ def test_a_stream_that_never_comes_is_named(
     assert "no camera/segmentation arrives" in camera.graphs[-1].message
 
 
+def test_fault_13_constant_stamps_are_told(
+    ros_context: Any,
+    camera: FakeCamera,
+    frames: dict[Stacks, Frame],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("perception_node.node.SILENCE", 0.1)
+    camera.calibrate_and_show(frames[TOWERS])
+    same = camera.messages(frames[TOWERS])
+
+    def complains() -> bool:
+        for publisher, message in zip(camera.publishers, same):
+            publisher.publish(message)
+        newest = camera.graphs[-1]
+        return newest.status == SceneGraph.BAD_IMAGE and all(
+            text in newest.message for text in ("the stamps of ", "do not advance", *TOPICS)
+        )
+
+    ros_context.wait_until(complains)
+
+
+def test_fault_8_a_best_effort_camera_whose_extrinsics_are_volatile_is_heard(
+    ros_context: Any, perception: PerceptionNode, frames: dict[Stacks, Frame]
+) -> None:
+    node = ros_context.add(Node("fake_camera", context=ros_context.context, namespace="/cell"))
+    best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    camera = FakeCamera(ros_context, node, images=best_effort, extrinsics=RELIABLE)
+
+    def confident() -> bool:
+        camera.calibrate()
+        for publisher, message in zip(camera.publishers, camera.messages(frames[OTHER])):
+            publisher.publish(message)
+        return any(graph.status == SceneGraph.CONFIDENT for graph in camera.graphs)
+
+    ros_context.wait_until(confident, what="a confident graph")
+    assert perception.count_subscribers("camera/image_raw") == 2
+
+
+def test_fault_8_no_frame_is_interpreted_twice_where_a_second_camera_is_best_effort(
+    ros_context: Any, camera: FakeCamera, perception: PerceptionNode, frames: dict[Stacks, Frame]
+) -> None:
+    best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    for topic, kind in TOPICS.items():
+        camera.node.create_publisher(kind, topic, best_effort)
+    ros_context.wait_until(
+        lambda: all(perception.count_subscribers(topic) == 2 for topic in TOPICS),
+        what="a second subscription of each topic",
+    )
+    camera.calibrate_and_show(frames[TOWERS])
+    for _ in range(5):
+        camera.show(frames[TOWERS])
+    stamps = [graph.header.stamp.sec for graph in camera.graphs]
+    assert stamps == sorted(set(stamps))
+
+
+def test_fault_6_two_perceptions_in_one_namespace_are_noticed(
+    ros_context: Any, perception: PerceptionNode
+) -> None:
+    listener = ros_context.add(Node("listener", context=ros_context.context, namespace="/cell"))
+    newest: dict[str, DiagnosticStatus] = {}
+    listener.create_subscription(
+        DiagnosticArray,
+        "diagnostics",
+        lambda array: newest.update({status.hardware_id: status for status in array.status}),
+        RELIABLE,
+    )
+    ros_context.wait_until(lambda: newest, what=f"a sign of life of {perception.get_name()}")
+    assert [status.level for status in newest.values()] == [DiagnosticStatus.OK]
+    ros_context.add(PerceptionNode(context=ros_context.context, namespace="/cell"))
+    ros_context.wait_until(
+        lambda: (
+            ["two of perception_node" in status.message for status in list(newest.values())]
+            == [True, True]
+        ),
+        what="both notice the other",
+    )
+
+
 def test_of_many_frames_the_newest_counts(camera: FakeCamera, frames: dict[Stacks, Frame]) -> None:
     camera.calibrate_and_show(frames[TOWERS])
     for _ in range(8):
@@ -171,6 +251,8 @@ def test_pictures_and_markers_are_for_those_who_look(
 
     ros_context.wait_until(seen)
     assert pictures[-1].encoding == "rgb8" and len(pictures[-1].data) < 500_000
+    # Fault 12: a picture is in the frame of the camera that took it.
+    assert {picture.header.frame_id for picture in pictures} == {"camera_optical_frame"}
     shown = markers[-1].markers
     assert shown[0].action == Marker.DELETEALL
     assert {marker.text for marker in shown if marker.text} == {n for s in TOWERS for n in s}

@@ -146,7 +146,7 @@ def test_fault_6_two_simulators_in_one_domain_say_so_and_warn_who_resets(ros_con
     simulator(ros_context)
     ros_context.wait_until(
         lambda: (
-            [(item.level, "two of sim_node" in item.message) for item in client.said.values()]
+            [(item.level, "two of sim_node" in item.message) for item in list(client.said.values())]
             == [(DiagnosticStatus.ERROR, True)] * 2
         ),
         what="both notice the other",

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Images of one time become one frame; the newest wins."""
 
+import pytest
+
 from perception_node.frame_pairing import FramePairing
 
 STREAMS = ("image", "depth", "segmentation")
@@ -44,11 +46,62 @@ def test_a_stream_that_is_missing_is_named() -> None:
     assert pairing.missing() == ("segmentation",)
 
 
-def test_without_a_stream_that_is_always_missing_those_of_the_newest_set_are_named() -> None:
+def test_without_a_stream_that_is_always_missing_those_of_the_fullest_set_are_named() -> None:
     pairing = FramePairing(STREAMS)
     feed(pairing, 1, "image", "depth")
     feed(pairing, 2, "segmentation")
-    assert pairing.missing() == ("depth", "image")
+    assert pairing.missing() == ("segmentation",)
+
+
+TOPICS = {stream: f"camera/{stream}" for stream in STREAMS}
+
+
+def test_fault_13_a_silent_stream_is_named() -> None:
+    pairing = FramePairing(STREAMS)
+    for stamp in range(10):
+        feed(pairing, stamp, "image", "depth")
+    assert pairing.problem(TOPICS).startswith("no camera/segmentation arrives")
+    feed(pairing, 10, *STREAMS)  # and one that stops later
+    for stamp in range(11, 20):
+        feed(pairing, stamp, "image", "segmentation")
+    assert pairing.problem(TOPICS).startswith("no camera/depth arrives")
+
+
+def test_fault_13_constant_stamps_of_all_streams_are_told() -> None:
+    pairing = FramePairing(STREAMS)
+    assert feed(pairing, 7, *STREAMS) == [7]
+    for _ in range(5):
+        assert feed(pairing, 7, *STREAMS) == []
+    assert pairing.problem(TOPICS).startswith(
+        "the stamps of camera/depth, camera/image, camera/segmentation do not advance"
+    )
+
+
+@pytest.mark.parametrize("complete_first", [True, False])
+def test_fault_13_a_stream_with_a_constant_stamp_is_named(complete_first: bool) -> None:
+    pairing = FramePairing(STREAMS)
+    if complete_first:
+        feed(pairing, 1, *STREAMS)
+    for stamp in range(2, 12):
+        feed(pairing, stamp, "image", "depth")
+        feed(pairing, 1, "segmentation")
+    assert pairing.problem(TOPICS).startswith("the stamps of camera/segmentation do not advance")
+
+
+def test_fault_13_a_stream_that_is_stamped_otherwise_is_named() -> None:
+    pairing = FramePairing(STREAMS)
+    for stamp in range(100, 2000, 100):
+        feed(pairing, stamp, "image", "segmentation")
+        feed(pairing, stamp + 33, "depth")
+    assert pairing.problem(TOPICS).startswith("camera/depth arrives with other stamps than")
+
+
+def test_stamps_that_start_anew_advance() -> None:
+    pairing = FramePairing(STREAMS)
+    feed(pairing, 10**12, *STREAMS)
+    for stamp in range(10):
+        feed(pairing, stamp, "image", "depth")
+    assert pairing.problem(TOPICS).startswith("no camera/segmentation arrives")
 
 
 def test_a_camera_whose_clock_starts_anew_is_followed() -> None:

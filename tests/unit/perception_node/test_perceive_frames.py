@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frames become scene graphs with an honest verdict; the simulator's truth is the oracle."""
 
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pybullet
@@ -16,6 +18,8 @@ from perception_node import (
     PinholeCamera,
     load_weights,
 )
+from perception_node.blocks.measure import measure_block
+from perception_node.blocks.surface import BlockSurface, NoSurfaceError
 from scene_graph import LEFT, GraphStatus, Relation, Stacks, left_relations, up_relations
 from sim_node.camera import Frame
 from sim_node.layouts import random_layout
@@ -225,6 +229,74 @@ class TestBlocksThatDoNotStand:
         perceived = perceive(world)
         assert perceived.status is GraphStatus.UNSTABLE
         assert "4 stacks" in perceived.message
+
+    def test_fault_13_a_block_without_an_upright_face_lies_and_the_camera_is_not_blamed(
+        self, world: World, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """As a cylinder that fell behind another block; where it happens is a matter of digits."""
+        world.reset((("red_box",), ("green_cylinder",), ()))
+        green = world.render().labels == world.label("green_cylinder")
+
+        def measure(mask: Any, depth: Any, camera: Any) -> BlockSurface:
+            if np.array_equal(mask, green):
+                raise NoSurfaceError("as if it lay there")
+            return measure_block(mask, depth, camera)
+
+        monkeypatch.setattr("perception_node.blocks.measure.measure_block", measure)
+        perceived = perceive(world)
+        assert perceived.status is GraphStatus.UNSTABLE
+        assert perceived.message.startswith("the green block lies on its side or leans")
+        move_hand(world, (0.5, 0.15, 0.2))
+        assert perceive(world).status is GraphStatus.OCCLUDED
+
+
+class TestFault13PicturesThatTellNothing:
+    """Each is answered by what is wrong with it, not by what blocks seem to do in it."""
+
+    @pytest.mark.parametrize(
+        ("change", "sentence"),
+        [
+            (lambda frame: replace(frame, rgb=0 * frame.rgb), "the picture is black; is the lens"),
+            (lambda frame: replace(frame, rgb=frame.rgb // 10), "the picture is too dark to tell"),
+            (lambda frame: replace(frame, rgb=0 * frame.rgb + 255), "the picture is white"),
+            (
+                lambda frame: replace(frame, depth=1000 * frame.depth),
+                "the depth is 1... in the middle, which cannot be metres; .* millimetres",
+            ),
+        ],
+        ids=["black", "dark", "white", "millimetres"],
+    )
+    def test_it_is_refused_with_the_cause(
+        self, world: World, change: Callable[[Frame], Frame], sentence: str
+    ) -> None:
+        world.reset(TOWERS)
+        perceived = perceive(world, change(world.render()))
+        assert perceived.status is GraphStatus.BAD_IMAGE
+        assert re.match(sentence, perceived.message), perceived.message
+        assert perceived.graph.objects == ()
+
+    def test_with_a_third_of_the_light_colours_are_still_told(self, world: World) -> None:
+        world.reset((("red_box", "blue_box"), ("green_box",), ()))
+        frame = world.render()
+        assert perceive(world, replace(frame, rgb=frame.rgb // 3)).graph.stacks() == (
+            ("red_box", "blue_box"),
+            ("green_box",),
+            (),
+        )
+
+    def test_a_camera_that_is_lower_than_it_says_puts_blocks_below_the_table(
+        self, world: World
+    ) -> None:
+        world.reset((("red_box", "blue_box"), ("green_box",), ()))
+        frame, camera = world.render(), camera_of(world)
+        lower = camera.world_from_optical - np.outer([0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.012])
+        perceived = PERCEPTION.perceive(
+            Observation(
+                frame.rgb, frame.labels, frame.depth, replace(camera, world_from_optical=lower)
+            )
+        )
+        assert perceived.status is GraphStatus.UNSTABLE
+        assert re.search("12 mm below the table; check camera/extrinsics", perceived.message)
 
 
 class TestBadFrames:

@@ -52,6 +52,7 @@ def test_blocks_that_stand_are_confident() -> None:
         (block(), block(bottom=0.04, tilt=0.3), "blue_box leans by 17 degrees"),
         (block(0.575), block(0.575, 0.04), "red_box stands 75 mm beside the centre of stack0"),
         (block(), block(0.52, 0.04), "blue_box overhangs red_box by 20 mm"),
+        (block(), block(bottom=0.03), "blue_box lies or leans beside red_box: .* 10 mm below the"),
     ],
 )
 def test_a_block_that_does_not_stand_is_named(
@@ -61,6 +62,15 @@ def test_a_block_that_does_not_stand_is_named(
     assert status is GraphStatus.UNSTABLE
     assert re.match(sentence, message)
     assert message.endswith("; look again, or tidy up by hand")
+
+
+def test_fault_13_what_is_below_the_table_is_measured_wrongly() -> None:
+    status, message = verdict(block(bottom=-0.009), block(bottom=0.031))
+    assert status is GraphStatus.UNSTABLE
+    assert message == (
+        "red_box cannot be where it is measured: its lower end is 9 mm below the table; check "
+        "camera/extrinsics and the depth"
+    )
 
 
 def test_nothing_is_said_of_blocks_that_were_not_measured_or_have_no_place() -> None:

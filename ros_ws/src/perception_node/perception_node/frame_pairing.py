@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -26,6 +26,20 @@ class StampedSet:
     messages: dict[str, Any]
 
 
+@dataclass
+class _Arrivals:
+    """What came of one stream since the newest complete set."""
+
+    count: int = 0
+    advances: int = 0
+    last: int = -(2**63)
+
+    @property
+    def stands_still(self) -> bool:
+        """Whether its stamps do not grow: the first may be new, each of the others is to be."""
+        return self.count >= 3 if self.advances == 1 else self.count > self.advances == 0
+
+
 class FramePairing:
     """Collects messages by stamp; hands out each complete set once, the newest only."""
 
@@ -33,6 +47,7 @@ class FramePairing:
         self._streams = frozenset(streams)
         self._waiting: dict[int, tuple[float, dict[str, Any]]] = {}
         self._newest = -(2**63)
+        self._since: dict[str, _Arrivals] = {stream: _Arrivals() for stream in streams}
 
     def add(self, stream: str, stamp: int, message: Any, arrival: float) -> StampedSet | None:
         """Takes a message in; returns the set that it completes, if it is newer than the last one.
@@ -46,9 +61,12 @@ class FramePairing:
         """
         if stamp <= self._newest:
             if self._newest - stamp < 5_000_000_000:
+                self._note(stream, stamp)
                 return None
             self._waiting.clear()
             self._newest = -(2**63)
+            self._since = {name: _Arrivals() for name in self._streams}
+        self._note(stream, stamp)
         first, messages = self._waiting.setdefault(stamp, (arrival, {}))
         messages[stream] = message
         if messages.keys() != self._streams:
@@ -56,6 +74,7 @@ class FramePairing:
                 del self._waiting[min(self._waiting)]
             return None
         self._newest = stamp
+        self._since = {stream: _Arrivals(last=stamp) for stream in self._streams}
         self._waiting = {key: kept for key, kept in self._waiting.items() if key > stamp}
         return StampedSet(stamp, first, messages)
 
@@ -63,7 +82,7 @@ class FramePairing:
         """Streams that the waiting sets lack, sorted; empty if none is waiting.
 
         What all of them lack, as the newest may just be on its way; if there is no such stream,
-        what the newest lacks.
+        what the fullest of the newest lacks.
         """
         if not self._waiting:
             return ()
@@ -72,4 +91,33 @@ class FramePairing:
             for stamp, (_, messages) in self._waiting.items()
         }
         always = frozenset.intersection(*lacking.values())
-        return tuple(sorted(always or lacking[max(lacking)]))
+        fullest = min(lacking, key=lambda stamp: (len(lacking[stamp]), -stamp))
+        return tuple(sorted(always or lacking[fullest]))
+
+    def problem(self, topics: Mapping[str, str]) -> str:
+        """A sentence that says which streams keep sets from getting complete, and how.
+
+        Args:
+            topics: what a person calls each stream.
+        """
+
+        def named(streams: Iterable[str]) -> str:
+            return ", ".join(topics[stream] for stream in sorted(streams))
+
+        if silent := [name for name, seen in self._since.items() if seen.count == 0]:
+            return f"no {named(silent)} arrives; is the camera's driver complete?"
+        if still := [name for name, seen in self._since.items() if seen.stands_still]:
+            return (
+                f"the stamps of {named(still)} do not advance; every picture needs the time at "
+                "which it was taken: check the camera's driver and its clock"
+            )
+        return (
+            f"{named(self.missing() or self._streams)} arrives with other stamps than the other "
+            "images; have the camera stamp what it takes at the same time alike"
+        )
+
+    def _note(self, stream: str, stamp: int) -> None:
+        seen = self._since[stream]
+        seen.count += 1
+        seen.advances += stamp > seen.last
+        seen.last = max(seen.last, stamp)

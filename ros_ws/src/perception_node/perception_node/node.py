@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+import traceback
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
@@ -20,7 +21,9 @@ from tamp_runtime.messages.images import ImageError, array_from_image, image_fro
 from tamp_runtime.messages.stamps import nanoseconds
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
+from tamp_runtime.presence import Presence
 from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
+from tamp_runtime.subscriptions import AdaptiveSubscription
 from visualization_msgs.msg import MarkerArray
 
 from scene_graph import GraphStatus
@@ -55,12 +58,16 @@ class PerceptionNode(Node):
         camera/image_raw, camera/depth/image_raw, camera/segmentation (sensor_msgs/Image) and
             camera/camera_info (sensor_msgs/CameraInfo): paired by equal stamps; only the newest
             complete frame is interpreted
-        camera/extrinsics (geometry_msgs/TransformStamped), latched
+        camera/extrinsics (geometry_msgs/TransformStamped), latched or sent again and again; these
+            and the images are heard reliable or best effort, as they are published
+        diagnostics (diagnostic_msgs/DiagnosticArray): of the other nodes
     Publishes:
         scene_graph (tamp_interfaces/SceneGraph): one for each frame, its status says whether it can
             be planned on
-        scene_graph/image (sensor_msgs/Image): the camera image with the graph drawn in
+        scene_graph/image (sensor_msgs/Image): the camera image with the graph drawn in, in the
+            frame of the camera image
         scene_graph/markers (visualization_msgs/MarkerArray)
+        diagnostics (diagnostic_msgs/DiagnosticArray): that it lives; a second one is noticed
     Services:
         image_to_scene_graph (tamp_interfaces/ImageToSceneGraph): interprets a goal image
     """
@@ -92,15 +99,9 @@ class PerceptionNode(Node):
         frames = MutuallyExclusiveCallbackGroup()
         for stream, topic in TOPICS.items():
             kind = Image if stream in ENCODINGS else CameraInfo
-            self.create_subscription(
-                kind, topic, self._receiver(stream), NEWEST, callback_group=frames
-            )
-        self.create_subscription(
-            TransformStamped,
-            "camera/extrinsics",
-            self._on_extrinsics,
-            LATCHED,
-            callback_group=frames,
+            AdaptiveSubscription(self, kind, topic, self._receiver(stream), NEWEST, frames)
+        AdaptiveSubscription(
+            self, TransformStamped, "camera/extrinsics", self._on_extrinsics, LATCHED, frames
         )
         self.create_timer(0.5, self._on_timer, callback_group=frames)
         self.create_service(
@@ -109,6 +110,7 @@ class PerceptionNode(Node):
             self._on_goal_image,
             callback_group=MutuallyExclusiveCallbackGroup(),
         )
+        Presence(self, "perception_node")
 
     # Callbacks
 
@@ -140,10 +142,9 @@ class PerceptionNode(Node):
         if since is None or now - since < SILENCE or now - self._last_image > SILENCE:
             return
         self._incomplete_since = now
-        missing = ", ".join(TOPICS[stream] for stream in self._pairing.missing())
         header = Header(stamp=self.get_clock().now().to_msg(), frame_id=self._frame_id())
-        sentence = f"no {missing} arrives with the stamps of the other images; check the camera"
-        self._publish(self._perception.rejected(GraphStatus.BAD_IMAGE, sentence), header, now, None)
+        sentence = self._pairing.problem(TOPICS)
+        self._publish(self._perception.rejected(GraphStatus.BAD_IMAGE, sentence), header, now)
 
     def _on_goal_image(
         self, request: ImageToSceneGraph.Request, response: ImageToSceneGraph.Response
@@ -174,12 +175,16 @@ class PerceptionNode(Node):
         except (ImageError, BadImageError) as error:
             perceived = self._perception.rejected(GraphStatus.BAD_IMAGE, str(error))
         except Exception as error:  # a defect must neither stop the node nor go unseen
-            self.get_logger().error(f"interpreting a frame failed: {error!r}", exc_info=True)
+            self.get_logger().error(f"interpreting a frame failed:\n{traceback.format_exc()}")
             perceived = self._perception.rejected(
                 GraphStatus.BAD_IMAGE,
                 f"internal error: {error!r}; please report the log of this node",
             )
-        self._publish(perceived, header, frame.arrival, rgb)
+        self._publish(perceived, header, frame.arrival)
+        if rgb is not None and self.context.ok() and self._drawings.get_subscription_count():
+            drawing = draw_scene_graph(rgb, perceived)
+            # A picture is in the frame of the camera that took it, not in that of the poses.
+            self._drawings.publish(image_from_array(drawing, "rgb8", messages["image"].header))
 
     def _pixels(self, stream: str, message: Image) -> Any:
         try:
@@ -198,7 +203,7 @@ class PerceptionNode(Node):
     def _frame_id(self) -> str:
         return self._extrinsics.header.frame_id if self._extrinsics else "world"
 
-    def _publish(self, perceived: Perceived, header: Header, arrival: float, rgb: Any) -> None:
+    def _publish(self, perceived: Perceived, header: Header, arrival: float) -> None:
         if not self.context.ok():
             return  # the node is being stopped
         seconds = time.perf_counter() - arrival
@@ -210,9 +215,6 @@ class PerceptionNode(Node):
                 self.get_logger().info("CONFIDENT: the scene is clear")
             else:
                 self.get_logger().warning(f"{perceived.status.name}: {perceived.message}")
-        if rgb is not None and self._drawings.get_subscription_count():
-            drawing = draw_scene_graph(rgb, perceived)
-            self._drawings.publish(image_from_array(drawing, "rgb8", header))
         if self._markers.get_subscription_count():
             self._markers.publish(markers_from_graph(perceived.graph, header))
 

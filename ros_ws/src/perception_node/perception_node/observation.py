@@ -14,6 +14,13 @@ from .errors import BadImageError
 
 #: Least side of an image [px].
 MIN_SIDE: Final = 32
+#: The brightest parts of a picture are brighter than this where colours can be told [0..255]: at a
+#: quarter of its light the simulator's picture is, at a fifth its blocks get other names.
+MIN_BRIGHTNESS: Final = 60
+#: The darkest parts of a picture are darker than this in some channel [0..255].
+MAX_BRIGHTNESS: Final = 250
+#: No table is as far away: a depth like this is in millimetres [m].
+MAX_DEPTH: Final = 50.0
 
 
 @dataclass(frozen=True)
@@ -58,6 +65,36 @@ class Observation:
             return self
         return replace(self, camera=self.camera.resized(rgb.shape[1], rgb.shape[0]))
 
+    def check_values(self) -> None:
+        """Raises BadImageError if nothing can be told by what is in the images."""
+        if problem := _light_problem(self.rgb) or _unit_problem(self.depth):
+            raise BadImageError(problem)
+
 
 def _size(image: NDArray[Any]) -> str:
     return "x".join(str(side) for side in image.shape[1::-1])
+
+
+def _light_problem(rgb: NDArray[np.uint8]) -> str:
+    """What keeps colours from being told anywhere in the picture, or an empty string."""
+    some = rgb[::4, ::4]
+    if np.percentile(some.max(axis=2), 99) < MIN_BRIGHTNESS:
+        black = "black" if some.max() < MIN_BRIGHTNESS // 4 else "too dark to tell colours"
+        return f"the picture is {black}; is the lens covered, or the light off?"
+    if np.percentile(some.min(axis=2), 1) > MAX_BRIGHTNESS:
+        return "the picture is white; is the camera overexposed?"
+    return ""
+
+
+def _unit_problem(depth: NDArray[np.floating] | None) -> str:
+    """What shows that the depth is not in metres, or an empty string."""
+    if depth is None:
+        return ""
+    with np.errstate(invalid="ignore"):
+        known = depth[np.isfinite(depth) & (depth > 0.0)]
+    if known.size and (middle := float(np.median(known))) > MAX_DEPTH:
+        return (
+            f"the depth is {middle:.0f} in the middle, which cannot be metres; if it is in "
+            "millimetres, publish it in metres (32FC1)"
+        )
+    return ""

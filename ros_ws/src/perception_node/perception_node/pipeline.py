@@ -10,14 +10,14 @@ from scene_graph import GraphStatus, SceneGraph
 
 from .blocks import find_blocks
 from .config import PerceptionConfig
-from .errors import BadImageError, PerceptionError
+from .errors import BadImageError, NotUprightError, PerceptionError
 from .graph import build_graph
-from .names import name_blocks
+from .names import color_names, mean_colors, name_blocks
 from .observation import Observation
 from .places import Places, Points, RowOfPlaces
 from .places.occlusion import find_occlusion
 from .segment import Segmenter, Segments, given_labels
-from .verdict import judge, judge_empty
+from .verdict import judge, judge_empty, judge_not_upright
 from .visual_module.coordinates import Locator
 from .visual_module.object_images import object_images
 
@@ -82,13 +82,20 @@ class Perception:
     def _perceive(self, observation: Observation) -> Perceived:
         """Raises PerceptionError if the observation cannot be used."""
         config, places = self.config, self.places
+        observation.check_values()
         segments = self._segments(observation)
         occlusion = find_occlusion(observation, segments, places, config)
         if len(segments) == 0:
             return self.rejected(*judge_empty(occlusion, config))
         coordinates = self.locator.locate(object_images(observation.rgb, segments))
         standing = places.stand(observation, segments, coordinates)
-        blocks = find_blocks(observation, segments, standing)
+        try:
+            blocks = find_blocks(observation, segments, standing)
+        except NotUprightError as error:
+            parts = [segment.part for segment in segments]
+            color = color_names(mean_colors(observation.rgb, parts))[error.index]
+            sentence = f"the {color} block {error}"
+            return self.rejected(*judge_not_upright(sentence, occlusion, config))
         names = name_blocks(observation.rgb, segments, blocks.shapes, standing.stacks)
         graph = build_graph(observation, segments, occlusion, coordinates, standing, blocks, names)
         verdict = judge(graph, occlusion, standing, blocks, names, config)

@@ -7,7 +7,7 @@ the places, and if the visual module reproduces what it saw (A.2.5).
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,8 @@ from .config import PerceptionConfig, StabilityLimits
 from .names import Names
 from .places import Standing
 from .places.occlusion import Occlusion
+
+_TIDY_UP: Final = "look again, or tidy up by hand"
 
 
 class Verdict(NamedTuple):
@@ -41,7 +43,7 @@ def judge(
     if standing.problem:
         return Verdict(GraphStatus.UNSTABLE, f"{standing.problem}; put every block on a place")
     if sentence := instability(blocks, names.names, standing, config.limits):
-        return Verdict(GraphStatus.UNSTABLE, f"{sentence}; look again, or tidy up by hand")
+        return Verdict(GraphStatus.UNSTABLE, sentence)
     if graph.confidence < config.min_confidence:
         worst = min(graph.objects, key=lambda item: item.confidence)
         return Verdict(
@@ -60,6 +62,13 @@ def judge_empty(occlusion: Occlusion, config: PerceptionConfig) -> Verdict:
     return Verdict(
         GraphStatus.NO_OBJECTS, "no block is seen; put blocks on the table, or check the camera"
     )
+
+
+def judge_not_upright(sentence: str, occlusion: Occlusion, config: PerceptionConfig) -> Verdict:
+    """The verdict on a picture with a block that could not be measured as one that is upright."""
+    if hidden := occluded(occlusion, config.max_hidden):
+        return Verdict(GraphStatus.OCCLUDED, hidden)
+    return Verdict(GraphStatus.UNSTABLE, sentence)
 
 
 def occluded(occlusion: Occlusion, max_hidden: float) -> str:
@@ -89,19 +98,29 @@ def instability(
             block, name = blocks.measured[item], names[item]
             pose = block.pose
             if block.tilt > limits.tilt:
-                return f"{name} leans by {np.degrees(block.tilt):.0f} degrees"
+                return f"{name} leans by {np.degrees(block.tilt):.0f} degrees; {_TIDY_UP}"
             support = place.position_world[2] if below is None else below.pose.top
             if abs(pose.bottom - support) > limits.gap:
-                return (
-                    f"{name} is in the air or tilted: its lower end is "
-                    f"{1000 * (pose.bottom - support):.0f} mm above {under}"
-                )
+                return f"{name} {_height_text(pose.bottom - support, under, below is None)}"
             centre = place.position_world if below is None else below.pose.position_world
             offset = float(np.hypot(*np.subtract(pose.position_world[:2], centre[:2])))
             if below is None and offset > limits.place_tolerance:
                 base = base_name(place.index)
-                return f"{name} stands {1000 * offset:.0f} mm beside the centre of {base}"
+                beside = f"{1000 * offset:.0f} mm beside the centre of {base}"
+                return f"{name} stands {beside}; {_TIDY_UP}"
             if below is not None and offset > limits.overhang * pose.size[0]:
-                return f"{name} overhangs {under} by {1000 * offset:.0f} mm"
+                return f"{name} overhangs {under} by {1000 * offset:.0f} mm; {_TIDY_UP}"
             below, under = block, name
     return ""
+
+
+def _height_text(gap: float, under: str, on_table: bool) -> str:
+    """What a wrong height of a block's lower end over what is under it means [m]."""
+    if gap > 0.0:
+        end = f"its lower end is {1000 * gap:.0f} mm above {under}"
+        return f"is in the air or tilted: {end}; {_TIDY_UP}"
+    if on_table:  # where nothing can be: what is measured is wrong, not what stands there
+        end = f"its lower end is {-1000 * gap:.0f} mm below {under}"
+        return f"cannot be where it is measured: {end}; check camera/extrinsics and the depth"
+    end = f"its lower end is {-1000 * gap:.0f} mm below the top of {under}"
+    return f"lies or leans beside {under}: {end}; {_TIDY_UP}"

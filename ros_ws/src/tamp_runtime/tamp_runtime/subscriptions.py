@@ -51,10 +51,12 @@ class AdaptiveSubscription:
         self._callback, self._wanted, self._group = callback, wanted, callback_group
         self._handled: deque[int] = deque(maxlen=_REMEMBERED)
         self._relaxed = False
+        # rclpy passes the information about a message to callbacks of two arguments.
+        self._heard: Callable[..., None] = self._receive
         node.create_subscription(
             kind,
             topic,
-            self._receive,
+            self._heard,
             wanted,
             callback_group=callback_group,
             event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._on_incompatible),
@@ -72,7 +74,7 @@ class AdaptiveSubscription:
         self._node.create_subscription(
             self._kind,
             self._topic,
-            self._receive,
+            self._heard,
             QoSProfile(
                 history=self._wanted.history,
                 depth=self._wanted.depth,

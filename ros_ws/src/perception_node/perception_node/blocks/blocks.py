@@ -40,6 +40,7 @@ def find_blocks(observation: Observation, segments: Segments, standing: Standing
 
     Raises:
         BadImageError: if too little depth of a block is known.
+        NotUprightError: if a block does not stand upright at all.
     """
     depth, camera = observation.depth, observation.camera
     if depth is None or camera is None:

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception_node.camera import PinholeCamera
-from perception_node.errors import BadImageError
+from perception_node.errors import BadImageError, NotUprightError
 from perception_node.segment import Segments
 
 from .box import box_residual, measure_box
 from .front import front_plane
 from .normals import surface_normals
 from .round import measure_round
-from .surface import FLATNESS, MIN_FACE_POINTS, BlockSurface
+from .surface import FLATNESS, MIN_FACE_POINTS, BlockSurface, NoSurfaceError
 from .view import BlockView
 
 Mask = NDArray[np.bool_]
@@ -35,15 +35,22 @@ def measure_blocks(
 
     Raises:
         BadImageError: if too little depth of a block is known; the sentence names its label.
+        NotUprightError: if enough is known, but it is no block that stands upright.
     """
     surfaces = []
-    for segment in segments:
+    for index, segment in enumerate(segments):
         try:
             surfaces.append(measure_block(segment.part, depth, camera))
         except BadImageError as error:
             raise BadImageError(
                 f"the depth of the object with label {segment.label} cannot be used: {error}; "
                 "check the depth camera"
+            ) from error
+        except NoSurfaceError as error:
+            raise NotUprightError(
+                "lies on its side or leans: no upright face of it is seen; put it upright, or "
+                "check the depth camera if it is",
+                index,
             ) from error
     return tuple(surfaces)
 
@@ -59,6 +66,7 @@ def measure_block(mask: Mask, depth: NDArray[np.floating], camera: PinholeCamera
     Raises:
         BadImageError: if too little depth is known to say anything; the sentence goes on from the
             block's name.
+        NoSurfaceError: if no surface of an upright block goes through the points.
     """
     rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))
     if len(rows) == 0:

@@ -15,8 +15,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from perception_node.errors import BadImageError
-
 Array = NDArray[np.float64]
 
 #: A point further than this from a surface is not of it [m].
@@ -40,6 +38,10 @@ class Interval:
         return 0.5 * (self.low + self.high)
 
 
+class NoSurfaceError(ValueError):
+    """Points that are known, but lie on no block that stands upright."""
+
+
 @dataclass(frozen=True)
 class BlockSurface:
     """What the depth of one block's pixels says about it. Lengths in m, frame world.
@@ -53,6 +55,9 @@ class BlockSurface:
         left, right: y of the sides in the block's frame.
         bottom, top: z of the lower and upper end.
         tilt: angle between the front face and the vertical [rad].
+
+    Raises:
+        NoSurfaceError: if a value is not finite.
     """
 
     shape: str
@@ -67,7 +72,7 @@ class BlockSurface:
     def __post_init__(self) -> None:
         values = (self.yaw, self.front, self.left.middle, self.right.middle, self.bottom.middle)
         if not np.isfinite([*values, self.top.middle, self.tilt]).all():
-            raise BadImageError("its depth does not form a surface")
+            raise NoSurfaceError("its depth does not form the surface of an upright block")
 
 
 def block_frame(yaw: float) -> Array:
