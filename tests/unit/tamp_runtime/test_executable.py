@@ -113,3 +113,18 @@ def test_fault_14_a_missing_module_is_one_sentence_that_says_how_to_get_it(
     assert done.stderr.startswith("cannot start: ") and done.stderr.count("\n") == 1
     assert f"has no Python module {module};" in done.stderr
     assert advice in done.stderr
+
+
+ENDING = """
+import atexit, sys
+from tamp_runtime.executable import end_process
+atexit.register(lambda: print("taken apart"))
+print("said", end="")
+print("warned", end="", file=sys.stderr)
+end_process(7)
+"""
+
+
+def test_fault_11_a_process_is_ended_with_all_that_it_said_and_without_being_taken_apart() -> None:
+    ended = subprocess.run([sys.executable, "-c", ENDING], capture_output=True, text=True)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (7, "said", "warned")

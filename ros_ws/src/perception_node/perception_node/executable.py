@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from tamp_runtime.executable import run_module
+from tamp_runtime.executable import end_process, run_module
 
 
-def perception_node() -> int:
+def perception_node() -> None:
     """Entry point of ``ros2 run perception_node perception_node``."""
-    return run_module("perception_node.node")
+    end_process(run_module("perception_node.node"))
 
 
 def train_visual() -> int:

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from tamp_runtime.executable import run_module
+from tamp_runtime.executable import end_process, run_module
 
 
-def sim_node() -> int:
+def sim_node() -> None:
     """Entry point of ``ros2 run sim_node sim_node``."""
-    return run_module("sim_node.node")
+    end_process(run_module("sim_node.node"))
 
 
 def render_dataset() -> int:

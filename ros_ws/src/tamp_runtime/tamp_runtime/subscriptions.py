@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Any, Final, cast
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import QoSRequestedIncompatibleQoSInfo, SubscriptionEventCallbacks
@@ -51,8 +51,8 @@ class AdaptiveSubscription:
         self._callback, self._wanted, self._group = callback, wanted, callback_group
         self._handled: deque[int] = deque(maxlen=_REMEMBERED)
         self._relaxed = False
-        # rclpy passes the information about a message to callbacks of two arguments.
-        self._heard: Callable[..., None] = self._receive
+        # rclpy's types know no callbacks of two arguments, though it has them: the second is info.
+        self._heard = cast(Callable[[Any], None], self._receive)
         node.create_subscription(
             kind,
             topic,
