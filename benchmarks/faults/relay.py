@@ -57,6 +57,7 @@ class Relay:
         self._node, self._later = node, later
         self._lock = threading.RLock()
         self._publisher = self._make_publisher()
+        self._emitted = False
         self._handler: Handler = self.emit
         absolute = f"/{topic.name}" if topic.name == "clock" else topic.name
         node.create_subscription(topic.kind, absolute, self._receive, topic.qos, raw=True)
@@ -64,11 +65,12 @@ class Relay:
     def set(self, mode: Mode) -> None:
         """Changes what happens to messages from now on, and to a lasting one as well."""
         with self._lock:
-            if self.topic.lasting:
-                self._forget()
             self._handler = mode.begin(self)
             if self.topic.lasting and self.last is not None:
+                self._emitted = False
                 self._handler(self.last)
+                if not self._emitted:
+                    self._forget()
 
     def clear(self) -> None:
         """Passes on from now on; a lasting message is sent once more."""
@@ -83,6 +85,7 @@ class Relay:
     def emit(self, message: bytes) -> None:
         """See :class:`Outlet`."""
         with self._lock:
+            self._emitted = True
             self._publisher.publish(message)
 
     def emit_later(self, message: bytes, seconds: float) -> None:
