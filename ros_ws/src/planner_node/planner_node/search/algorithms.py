@@ -8,6 +8,7 @@ from typing import Final
 
 from .a_star import a_star
 from .both_ends import both_ends
+from .bounded import bounded
 from .breadth_first import breadth_first
 from .limits import Limits
 from .patterns_both_ends import patterns_both_ends
@@ -27,6 +28,7 @@ ALGORITHMS: Final[dict[str, SearchAlgorithm]] = {
     "both_ends": both_ends,
     "a_star": a_star,
     "patterns": patterns_both_ends,
+    "bounded": bounded,
 }
 
 

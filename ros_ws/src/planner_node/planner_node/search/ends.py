@@ -13,15 +13,20 @@ from .limits import Limits
 from .packed import Keys, Words, word_of
 from .patterns import Distances
 from .product import LIKE, ProductSpace
-from .state import ANY, Problem
+from .state import ANY, Problem, State
 from .wanted import Wanted
 
 
 def start_word(problem: Problem) -> Words:
     """The start with the blocks as :class:`Wanted` counts them."""
+    return encoded_word(problem, problem.start)
+
+
+def encoded_word(problem: Problem, state: State) -> Words:
+    """A state with the blocks as :class:`Wanted` counts them."""
     index = {symbol: number for number, symbol in enumerate(problem.symbols.values())}
     index[ANY] = LIKE
-    return word_of([[index[symbol] for symbol in stack] for stack in problem.start])
+    return word_of([[index[symbol] for symbol in stack] for stack in state])
 
 
 @dataclass(frozen=True)
@@ -44,7 +49,10 @@ def prepare(problem: Problem, wanted: Wanted, limits: Limits) -> Ends | None:
     """The best split into groups that was found; None where no split fits."""
     places, like = len(problem.start), sum(stack.count(ANY) for stack in problem.start)
     start = start_word(problem)
-    goals = goal_states(wanted, places, like, limits.poll)
+    if problem.target is not None and not like:
+        goals: Words | None = encoded_word(problem, problem.target)
+    else:
+        goals = goal_states(wanted, places, like, limits.poll)
     if goals is not None and not len(goals):
         raise limits.impossible()
     candidates: list[tuple[Group, ...]]

@@ -87,15 +87,6 @@ class Limits:
         """For the search of a part of the problem, whose expansions count here."""
         return PartLimits(self)
 
-    def not_found(self) -> SearchLimitError:
-        """To be raised by an algorithm that gives up without a plan and without a proof."""
-        return SearchLimitError(
-            f"no plan to '{self._goal}' was found after {self.expanded} expanded states, and "
-            "none was ruled out; another algorithm may find one, or ask for less",
-            self.expanded,
-            self.seconds(),
-        )
-
     def impossible(self) -> UnreachableError:
         """To be raised when no arrangement of the blocks at all is a goal."""
         return UnreachableError(

@@ -9,7 +9,7 @@ state on a plan of C moves is never left out, whether or not the bound is consis
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Sized
 from itertools import pairwise
 from typing import Final
 
@@ -46,6 +46,15 @@ def patterns_both_ends(problem: Problem, limits: Limits) -> list[State]:
     if ends is None:
         return a_star(problem, limits)
     return states_along(problem.start, _Search(ends, wanted, limits).moves())
+
+
+def moves_along(path: Sequence[Sequence[Sized]]) -> list[Move]:
+    """The moves between the states of a path, encoded or in names."""
+    moves = []
+    for before, after in pairwise(path):
+        changes = [len(new) - len(old) for old, new in zip(before, after)]
+        moves.append(Move(changes.index(-1), changes.index(1)))
+    return moves
 
 
 def states_along(start: State, moves: Sequence[Move]) -> list[State]:

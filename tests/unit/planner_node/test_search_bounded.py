@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Plans for many blocks: right, with a proven bound, and the same every time."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+from planner_states import NAMES, distance, random_state, relation_holds
+
+from planner_node.errors import SearchCancelledError, SearchLimitError
+from planner_node.goals import Goal, complete_goal
+from planner_node.search import make_plan, search
+from planner_node.search.construct import constructed, window_of
+from planner_node.validator import validate_plan
+from scene_graph import Relation, Stacks, apply_move
+
+
+def many(count: int) -> tuple[str, ...]:
+    return tuple(f"block{index:02}" for index in range(count))
+
+
+def problem(blocks: int, places: int, seed: int) -> tuple[Stacks, Stacks]:
+    rng = random.Random(seed)
+    return random_state(many(blocks), places, rng), random_state(many(blocks), places, rng)
+
+
+@pytest.mark.parametrize(("blocks", "places"), [(14, 3), (20, 3), (20, 4)])
+def test_many_blocks_are_arranged_and_the_bound_is_told(blocks: int, places: int) -> None:
+    initial, target = problem(blocks, places, 3)
+    found = make_plan(initial, complete_goal(target), algorithm="bounded", max_expansions=10**7)
+    assert found.states[-1] == target
+    assert 1.0 <= found.bound < 2.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_bound_is_true(seed: int) -> None:
+    initial, target = problem(11, 3, seed)
+    goal = complete_goal(target)
+    found = make_plan(initial, goal, algorithm="bounded")
+    shortest = make_plan(initial, goal)
+    assert shortest.bound == 1.0
+    assert len(found.moves) <= found.bound * len(shortest.moves) + 1e-9
+    assert len(found.moves) >= len(shortest.moves)
+
+
+def test_few_blocks_get_a_shortest_plan() -> None:
+    rng = random.Random(4)
+    initial, target = random_state(NAMES[:5], 3, rng), random_state(NAMES[:5], 3, rng)
+    found = make_plan(initial, complete_goal(target), algorithm="bounded")
+    assert (len(found.moves), found.bound) == (
+        distance(initial, lambda state: state == target),
+        1.0,
+    )
+
+
+def test_it_is_deterministic() -> None:
+    initial, target = problem(13, 3, 5)
+    one, other = (search(initial, complete_goal(target), algorithm="bounded") for _ in range(2))
+    assert (one.moves, one.expanded, one.bound) == (other.moves, other.expanded, other.bound)
+
+
+def test_limits_hold_for_its_parts_too() -> None:
+    initial, target = problem(14, 3, 1)
+    goal = complete_goal(target)
+    with pytest.raises(SearchLimitError) as caught:
+        search(initial, goal, algorithm="bounded", max_expansions=20)
+    assert caught.value.expanded == 20
+    polls = 0
+
+    def cancelled() -> bool:
+        nonlocal polls
+        polls += 1
+        return polls > 20
+
+    with pytest.raises(SearchCancelledError):
+        search(initial, goal, algorithm="bounded", cancelled=cancelled)
+    assert polls == 21
+
+
+@pytest.mark.parametrize("places", [3, 4, 6])
+@pytest.mark.parametrize("seed", range(20))
+def test_a_constructed_plan_leads_to_the_target(places: int, seed: int) -> None:
+    initial, target = problem(9, places, seed)
+    moves = constructed(initial, target, random.Random(seed))
+    validate_plan(initial, complete_goal(target).relations, moves)
+
+
+def test_a_stretch_leaves_out_what_stays() -> None:
+    initial, target = problem(12, 3, 2)
+    states = [initial]
+    for move in constructed(initial, target, random.Random(0)):
+        states.append(apply_move(states[-1], move))
+    for first in range(0, len(states) - 1, 3):
+        last, start, end = window_of(states, first, 4)
+        inside = {name for stack in start for name in stack}
+        assert last > first
+        assert len(inside) <= 4
+        assert inside == {name for stack in end for name in stack}
+        for part, whole in ((start, states[first]), (end, states[last])):
+            for ours, stack in zip(part, whole):
+                assert ours == stack[len(stack) - len(ours) :]
+
+
+def test_two_blocks_among_thirty_are_planned_for_with_the_fewest_moves() -> None:
+    rng = random.Random(6)
+    initial = random_state(many(30), 5, rng)
+    goal = Goal((Relation(initial[0][-1], "up", initial[1][-1]),))
+    found = make_plan(initial, goal)
+    assert len(found.moves) == 1
+    assert relation_holds(found.states[-1], goal.relations[0])
