@@ -13,8 +13,7 @@ import signal
 import sys
 from collections.abc import Mapping
 from types import FrameType
-from typing import NoReturn
-from typing import Final
+from typing import Final, NoReturn
 
 #: The exit code of a node that cannot start, as with parameters that make no sense.
 EXIT_CANNOT_START: Final = 2
