@@ -33,7 +33,8 @@ PARAMETERS: Final = (
     ParameterSpec(
         "search_algorithm",
         _DEFAULTS.search_algorithm,
-        f"How plans are searched for: {', '.join(ALGORITHMS)}; all give shortest plans.",
+        f"How plans are searched for: {', '.join(ALGORITHMS)}; "
+        "all give shortest plans but bounded, which is for many blocks.",
         check=_algorithm_problem,
     ),
     ParameterSpec(

@@ -18,7 +18,7 @@ from ..goals.goal import Goal, complete_goal
 from .construct import constructed, window_of
 from .ends import encoded_word, start_word
 from .groups import complete_groups, group_sizes
-from .limits import Limits
+from .limits import Limits, PartTooLargeError
 from .patterns_both_ends import moves_along, patterns_both_ends, states_along
 from .state import Problem, State
 from .wanted import Wanted
@@ -34,6 +34,8 @@ KEPT: Final = 4
 #: blocks on three places are few enough for long stretches.
 ROUNDS: Final = ((6, 6), (3, 8), (2, 10), (1, 10))
 ROUNDS_ON_THREE: Final = ((3, 6), (2, 9), (2, 12), (1, 13))
+#: States after which a stretch is left as it is.
+MAX_STRETCH_EXPANSIONS: Final = 60_000
 #: Patterns of a group of the split that is tried for the bound.
 GUIDE_PATTERNS: Final = 16_000
 
@@ -120,11 +122,15 @@ def _shortened(states: tuple[Stacks, ...], most_blocks: int, limits: Limits) -> 
     first = 0
     while first < len(states) - 1:
         last, start, end = window_of(states, first, most_blocks)
+        moves: list[Move] = []
         if start != end:
-            path = patterns_both_ends(Problem(start, complete_goal(end)), limits.of_a_part())
-            moves = moves_along(path)
-        else:
-            moves = []
+            part = limits.of_a_part(MAX_STRETCH_EXPANSIONS)
+            try:
+                moves = moves_along(patterns_both_ends(Problem(start, complete_goal(end)), part))
+            except PartTooLargeError:
+                # It stays as it is.
+                first += max(1, (last - first) // 3)
+                continue
         if len(moves) < last - first:
             states = (*states[:first], *_states(states[first], moves), *states[last + 1 :])
         elif last == len(states) - 1:

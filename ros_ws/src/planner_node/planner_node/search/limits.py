@@ -83,9 +83,13 @@ class Limits:
         """To be told by algorithms that know a bound: no plan has fewer moves."""
         self.at_least = max(moves, self.at_least or 0)
 
-    def of_a_part(self) -> PartLimits:
-        """For the search of a part of the problem, whose expansions count here."""
-        return PartLimits(self)
+    def of_a_part(self, max_expansions: int | None = None) -> PartLimits:
+        """For the search of a part of the problem, whose expansions count here.
+
+        Args:
+            max_expansions: of the part; it ends with PartTooLargeError. None: as many as the whole.
+        """
+        return PartLimits(self, max_expansions)
 
     def impossible(self) -> UnreachableError:
         """To be raised when no arrangement of the blocks at all is a goal."""
@@ -114,24 +118,37 @@ class Limits:
         )
 
 
+class PartTooLargeError(Exception):
+    """A part of a search is given up; its algorithm goes on without."""
+
+
 class PartLimits(Limits):
     """Those of a part of a search: counts for the whole, and what is proven stays in the part."""
 
-    def __init__(self, whole: Limits) -> None:
+    def __init__(self, whole: Limits, max_expansions: int | None) -> None:
         super().__init__(whole._initial, whole._goal)
         self._whole = whole
+        self._most = max_expansions
 
     def count_expansion(self) -> None:
         """See :class:`Limits`."""
+        self._left(1)
         self._whole.count_expansion()
         self.expanded += 1
 
     def count_expansions(self, number: int) -> int:
         """See :class:`Limits`."""
-        allowed = self._whole.count_expansions(number)
+        allowed = self._whole.count_expansions(self._left(number))
         self.expanded += allowed
         return allowed
 
     def poll(self) -> None:
         """See :class:`Limits`."""
         self._whole.poll()
+
+    def _left(self, number: int) -> int:
+        if self._most is None:
+            return number
+        if self.expanded >= self._most:
+            raise PartTooLargeError(f"a part was not solved within {self._most} expanded states")
+        return min(number, self._most - self.expanded)
