@@ -5,7 +5,7 @@ Each trial is a small task on a running graph in a DDS domain of its own. The fa
 relays between the nodes, to their processes, by clients or in the world; the answer is judged by
 ground truth and by whether it names the cause; then a plain task must succeed. Stops cleanly on
 Ctrl-C; RESUME=1 goes on. ONLY=NAME (or part of one), PHASE= and SEED= run single trials again,
-which changes no result file.
+which writes nothing into benchmarks/results.
 """
 
 from __future__ import annotations
@@ -42,6 +42,8 @@ from tamp_bringup.scene_observer import SimulationError
 FIRST_SEED: Final = 1000
 TESTS: Final = Path(__file__).resolve().parent.parent / "tests"
 FOLDER: Final = Path("runs") / "eval_faults"
+#: A trial that is run again by its seed leaves the campaign's results as they are.
+AGAIN: Final = FOLDER / "again"
 #: The kinds of a quick run: one that needs no relay, and two that share theirs.
 QUICK: Final = ("cancelled", "joints-lost-2s", "trajectory-nan")
 
@@ -54,11 +56,12 @@ class Task:
     phase: Phase
     trial: int
     seed: int
+    folder: Path = FOLDER
 
     @property
     def path(self) -> Path:
         """Where its result is kept."""
-        return FOLDER / f"{self.fault.name}_{self.phase.value}_{self.trial}.json"
+        return self.folder / f"{self.fault.name}_{self.phase.value}_{self.trial}.json"
 
     @property
     def groups(self) -> tuple[str, ...]:
@@ -78,13 +81,16 @@ def plan_tasks(
     tasks = []
     for fault in faults:
         if phase is not None and seed is not None:
-            tasks.append(Task(fault, phase, 0, seed))
+            tasks.append(Task(fault, phase, 0, seed, AGAIN))
             continue
         for trial in range(trials):
-            if phase is None or fault.phase_of(trial) == phase:
-                tasks.append(
-                    Task(fault, fault.phase_of(trial), trial, seed or seed_of(fault, trial))
-                )
+            moment = fault.phase_of(trial)
+            if phase is not None and moment != phase:
+                continue
+            if seed is None:
+                tasks.append(Task(fault, moment, trial, seed_of(fault, trial)))
+            else:
+                tasks.append(Task(fault, moment, trial, seed, AGAIN))
     return sorted(tasks, key=lambda task: task.groups)
 
 
@@ -151,7 +157,7 @@ def main() -> int:
     tasks = plan_tasks(faults, options.trials, options.phase, options.seed)
     if not tasks:
         parser.error("no trial fits; which phases a fault has stands in docs/results.md")
-    FOLDER.mkdir(parents=True, exist_ok=True)
+    AGAIN.mkdir(parents=True, exist_ok=True)
     single = bool(options.only or options.phase or options.seed is not None)
     if not options.resume and not options.report:
         for task in tasks:

@@ -22,6 +22,8 @@ from tamp_bringup.task import goal_text
 #: After which an answer is overdue, and how long one to a cancel may take then [s].
 ANSWER_SECONDS: Final = 60.0
 CANCEL_SECONDS: Final = 10.0
+#: Between a fault of PERCEIVE and the request: pictures may still be on their way [s].
+_SETTLE: Final = 0.3
 #: Until a restarted perception_node says something, on a busy machine [s].
 GRAPH_SECONDS: Final = 40.0
 #: A fault of EXECUTE begins up to this much after its pick or place [s].
@@ -106,6 +108,7 @@ def _under_fault(setting: Setting, fault: Fault, result: TrialResult) -> TrialRe
     injection = fault.injection
     if setting.phase is Phase.PERCEIVE and not injection.needs_goal:
         _begin(setting, fault, course)
+        time.sleep(_SETTLE)
     setting.asker = (
         CommandAsker(setting.folder / "command.log")
         if fault.asker == "command"

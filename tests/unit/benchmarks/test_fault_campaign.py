@@ -92,6 +92,7 @@ def test_the_command_that_is_printed_runs_the_same_trial() -> None:
     (fault,) = faults_named("cancelled")
     (printed,) = plan_tasks([fault], 5, Phase.CONFIRM, 1234)
     assert (printed.phase, printed.seed) == (Phase.CONFIRM, 1234)
+    assert printed.path not in [task.path for task in plan_tasks([fault], 5, None, None)]
     command = command_of(trial(fault="cancelled", phase="confirm", seed=1234))
     assert command == "make eval-faults ONLY=cancelled PHASE=confirm SEED=1234"
     assert seed_of(fault, 1) == seed_of(fault, 0) + 1
