@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-visual eval-tasks bench-planner results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-visual eval-tasks eval-faults bench-planner results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -42,6 +42,11 @@ eval-visual: setup  ## scene graph accuracy on unseen states; QUICK=1
 eval-tasks: setup  ## success from pixels to tower; N= BLOCKS= RTF= RESUME=1 QUICK=1 BASELINE=
 	@$(RUN) python benchmarks/eval_tasks.py $(if $(N),--n $(N)) $(if $(BLOCKS),--blocks $(BLOCKS)) \
 	  $(if $(RTF),--real-time-factor $(RTF)) $(if $(RESUME),--resume) $(if $(BASELINE),--baseline "$(BASELINE)")
+
+eval-faults: setup  ## faults of every kind in every phase, and what becomes of the task; ONLY= PHASE= SEED= TRIALS= RTF= RESUME=1 QUICK=1
+	@$(RUN) python benchmarks/eval_faults.py $(if $(ONLY),--only "$(ONLY)") $(if $(PHASE),--phase $(PHASE)) \
+	  $(if $(SEED),--seed $(SEED)) $(if $(TRIALS),--trials $(TRIALS)) $(if $(RTF),--real-time-factor $(RTF)) \
+	  $(if $(RESUME),--resume) $(ARGS)
 
 bench-planner: setup  ## search times, lengths and bounds; FD=venv with up-fast-downward QUICK=1
 	@$(RUN) python benchmarks/bench_planner.py $(if $(FD),--fd "$(FD)")
