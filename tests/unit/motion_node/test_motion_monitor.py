@@ -8,9 +8,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from motion_scenes import EDGE, scene
+from tamp_runtime.motion_report import MotionReason
 
 from motion_node.execution.arm_state import ArmState
 from motion_node.execution.monitor import Monitor, MonitorSettings, Verdict
+from motion_node.execution.objections import objection
 from motion_node.planner import MotionPlanner
 from motion_node.robots import PANDA
 from motion_node.robots.joints import JointValues
@@ -207,6 +209,32 @@ def test_silence_does_not_make_a_short_disturbance_long(trajectory: Trajectory) 
         disturbed = 0.4 if 4.0 < time < 6.05 else 0.0
         joints = pushed(squeezed(trajectory.sample(time)[0]), 3, disturbed)
         assert monitor.update(ArmState(1000.0 + time, time, joints, 0.0)) is Verdict.GOING
+
+
+def test_fault_4_fingers_that_do_not_open_on_the_way_to_a_block_are_noticed(
+    trajectory: Trajectory,
+) -> None:
+    closed = np.zeros(2)
+    verdict, time, monitor, _ = watch(
+        trajectory, lambda t: JointValues(trajectory.sample(t)[0].arm, closed)
+    )
+    assert verdict is Verdict.NOT_OPENED
+    assert time < trajectory.intervals[0].end
+    state = ArmState(1000.0 + time, time, JointValues(HOME.arm, closed), 0.0)
+    phase = trajectory.interval_at(monitor.time).phase
+    error = objection(verdict, phase, monitor.block, state)
+    assert error.reason is MotionReason.GRASP_LOST
+    assert "the fingers do not open: they stand 0 mm apart" in str(error)
+    assert phase.object_name in str(error)
+
+
+def test_fault_13_joint_states_without_stamps_are_named_where_they_may_mislead(
+    trajectory: Trajectory,
+) -> None:
+    for stamped in (True, False):
+        state = ArmState(1000.0, 1000.0, HOME, 0.0, stamped)
+        error = objection(Verdict.OFF_THE_PATH, trajectory.intervals[0].phase, None, state)
+        assert ("no time stamps" in str(error)) is not stamped
 
 
 def test_fault_4_fingers_that_do_not_close_are_noticed(trajectory: Trajectory) -> None:

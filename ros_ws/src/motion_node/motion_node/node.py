@@ -146,7 +146,7 @@ class MotionNode(Node):
                 self.get_logger().warning(str(error))
             self._states.refuse(str(error))
             return
-        self._states.put(seconds(message.header.stamp) or time.monotonic(), positions)
+        self._states.put(seconds(message.header.stamp) or None, positions)
 
     def _on_description(self, message: String) -> None:
         if message.data == self._description:
@@ -159,6 +159,7 @@ class MotionNode(Node):
             self.get_logger().error(f"robot_description cannot be used: {error}")
             return
         self._planner = planner
+        planner.timing = timing_settings(self._values)  # it may have been changed meanwhile
         self.get_logger().info("ready for plans")
         for moves in range(1, PREPARED_MOVES + 1):
             planner.prepare(PREPARED_STACKS, moves)

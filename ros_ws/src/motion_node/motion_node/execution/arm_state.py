@@ -26,12 +26,14 @@ class ArmState:
         received: time of its arrival by this machine's clock, :meth:`ArmStates.now` [s].
         positions: of shapes (n,) and (2,) [rad, m].
         resting: for how long no joint has moved, by the driver's clock [s].
+        stamped: whether the driver gave the stamp; otherwise it is the time of arrival.
     """
 
     stamp: float
     received: float
     positions: JointValues
     resting: float
+    stamped: bool = True
 
 
 class ArmStates(Protocol):
@@ -88,16 +90,18 @@ class ArmStateBox:
         """See :class:`ArmStates`."""
         return self._clock()
 
-    def put(self, stamp: float, positions: JointValues) -> None:
-        """A new measurement; see :class:`ArmState`."""
+    def put(self, stamp: float | None, positions: JointValues) -> None:
+        """A new measurement; see :class:`ArmState`. Without a stamp, its arrival counts."""
         with self._changed:
+            stamped = stamp is not None
+            stamp = self.now() if stamp is None else stamp
             anchor = self._rest_positions
             backwards = self._newest is not None and stamp < self._newest.stamp
             moved = anchor is None or max(positions.furthest(anchor)) > REST_TOLERANCE
             if moved or backwards:
                 self._rest_positions, self._rest_since = positions, stamp
             resting = stamp - self._rest_since
-            self._newest = ArmState(stamp, self.now(), positions, resting)
+            self._newest = ArmState(stamp, self.now(), positions, resting, stamped)
             self._problem = ""
             self._changed.notify_all()
 

@@ -15,7 +15,7 @@ from enum import Enum, auto
 import numpy as np
 from numpy.typing import NDArray
 
-from ..phases import PLACE, Phase
+from ..phases import PICK, PLACE, Phase
 from ..robots.joints import JointValues
 from ..timing.trajectory import Interval, Trajectory
 from .arm_state import ArmState
@@ -95,11 +95,13 @@ class _Travel:
         ends: where it begins and ends, shape (2, n) [rad].
         block: the phase whose block the fingers hold, or have just let go; None: neither.
         middle: half way between the block's half width and fully open fingers [m].
+        opens: whether the fingers open on it to go around the block that is picked next.
     """
 
     ends: Array
     block: Phase | None
     middle: float
+    opens: bool
 
 
 def _travels(trajectory: Trajectory) -> dict[Interval, _Travel]:
@@ -116,7 +118,7 @@ def _travels(trajectory: Trajectory) -> dict[Interval, _Travel]:
         if block is not None and block.grasp is not None:
             middle = (block.grasp.width / 2 + block.grip) / 2
         ends = trajectory.sample(np.array([interval.start, interval.end]))[0].arm
-        result[interval] = _Travel(ends, block if middle else None, middle)
+        result[interval] = _Travel(ends, block if middle else None, middle, phase.kind == PICK)
     return result
 
 
@@ -136,6 +138,8 @@ class Monitor:
     STEP = 0.02
     #: An arm this far from both ends of a stretch is on its way for certain [rad].
     ON_ITS_WAY = 0.05
+    #: An opening finger this far behind where it was sent does not open [m].
+    BEHIND_FINGER = 0.01
 
     def __init__(self, trajectory: Trajectory, state: ArmState, settings: MonitorSettings) -> None:
         self.trajectory, self.settings = trajectory, settings
@@ -257,11 +261,14 @@ class Monitor:
         """
         interval = self.trajectory.interval_at(self.time)
         travel = self._travels.get(interval)
-        if travel is None or travel.block is None:
+        if travel is None or not (travel.block or travel.opens):
             return Verdict.GOING
         if np.abs(travel.ends - state.positions.arm).max(axis=1).min() < self.ON_ITS_WAY:
             return Verdict.GOING
         fingers = float(np.mean(state.positions.fingers))
+        if travel.block is None:
+            asked = float(np.mean(self.trajectory.sample(self.time)[0].fingers))
+            return Verdict.NOT_OPENED if fingers < asked - self.BEHIND_FINGER else Verdict.GOING
         if interval.holding:
             return Verdict.NOT_CLOSED if fingers > travel.middle else Verdict.GOING
         return Verdict.NOT_OPENED if fingers < travel.middle else Verdict.GOING

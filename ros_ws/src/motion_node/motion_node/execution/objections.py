@@ -20,6 +20,11 @@ _SENTENCES = {
     Verdict.CLOCK_WENT_BACK: "the joint states' time went back; was the simulator restarted?",
 }
 
+_NO_STAMPS = (
+    "; joint_states have no time stamps, so that the time of their arrival was taken, which is not "
+    "the arm's where a simulation runs faster or slower; have its driver stamp them"
+)
+
 
 def objection(
     verdict: Verdict, phase: Phase, block: Phase | None, state: ArmState
@@ -36,6 +41,11 @@ def objection(
             f"the fingers did not open: they stand {apart:.0f} mm apart and still hold "
             f"{block.object_name}; check the gripper"
         )
+    elif verdict is Verdict.NOT_OPENED and phase.grasp is not None:
+        sentence = (
+            f"the fingers do not open: they stand {apart:.0f} mm apart, and {phase.object_name} is "
+            f"{1000 * phase.grasp.width:.0f} mm wide; check the gripper"
+        )
     elif verdict is Verdict.NOT_CLOSED and phase.grasp is not None:
         sentence = (
             f"the fingers did not close on {phase.tool.held}: they stand {apart:.0f} mm "
@@ -46,6 +56,6 @@ def objection(
         sentence = f"the fingers closed on nothing or lost {held}"
     else:
         doing = f"{phase.kind} of {phase.object_name}" if phase.object_name else "way home"
-        sentence = f"{_SENTENCES[verdict]} ({doing})"
+        sentence = f"{_SENTENCES[verdict]} ({doing}){'' if state.stamped else _NO_STAMPS}"
         return ExecutionError(MotionReason.TRACKING_LOST, sentence, recoverable=True)
     return ExecutionError(MotionReason.GRASP_LOST, sentence, recoverable=True)

@@ -24,7 +24,7 @@ class ExecutionSettings:
 
     joint_state_timeout: float = 15.0
     description_timeout: float = 10.0
-    rest_timeout: float = 60.0
+    rest_timeout: float = 30.0
     rest_seconds: float = 0.8
     execution_factor: float = 20.0
     brake_seconds: float = 0.4
