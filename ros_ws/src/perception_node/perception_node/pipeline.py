@@ -16,7 +16,8 @@ from .names import color_names, mean_colors, name_blocks
 from .observation import Observation
 from .places import Places, Points, RowOfPlaces
 from .places.occlusion import find_occlusion
-from .segment import Segmenter, Segments, given_labels
+from .places.table import table_problem
+from .segment import Segmenter, Segments, check_segments, given_labels
 from .verdict import judge, judge_empty, judge_not_upright
 from .visual_module.coordinates import Locator
 from .visual_module.object_images import object_images
@@ -84,6 +85,9 @@ class Perception:
         config, places = self.config, self.places
         observation.check_values()
         segments = self._segments(observation)
+        check_segments(observation.rgb, segments)
+        if problem := table_problem(observation, segments, places):
+            raise BadImageError(problem)
         occlusion = find_occlusion(observation, segments, places, config)
         if len(segments) == 0:
             return self.rejected(*judge_empty(occlusion, config))

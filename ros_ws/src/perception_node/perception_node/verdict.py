@@ -50,7 +50,7 @@ def judge(
             GraphStatus.LOW_CONFIDENCE,
             f"the visual module reproduces {worst.name} with a confidence of only "
             f"{worst.confidence:.2f} (required: {config.min_confidence:.2f}); look again, "
-            "or train it on such scenes",
+            "check camera/segmentation, or train it on such scenes",
         )
     return Verdict(GraphStatus.CONFIDENT)
 
@@ -107,7 +107,7 @@ def instability(
             if below is None and offset > limits.place_tolerance:
                 base = base_name(place.index)
                 beside = f"{1000 * offset:.0f} mm beside the centre of {base}"
-                return f"{name} stands {beside}; {_TIDY_UP}"
+                return f"{name} stands {beside}; {_TIDY_UP}, or calibrate the camera if all do"
             if below is not None and offset > limits.overhang * pose.size[0]:
                 return f"{name} overhangs {under} by {1000 * offset:.0f} mm; {_TIDY_UP}"
             below, under = block, name

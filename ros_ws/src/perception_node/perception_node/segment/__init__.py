@@ -5,7 +5,8 @@ A segmenter is any function from an :class:`~perception_node.observation.Observa
 :class:`Segments`; a perception is given it by ``Perception(locator, segmenter=…)``.
 """
 
+from .checks import check_segments
 from .labels import given_labels
 from .segments import Segment, Segmenter, Segments, largest_part
 
-__all__ = ["Segment", "Segmenter", "Segments", "given_labels", "largest_part"]
+__all__ = ["Segment", "Segmenter", "Segments", "check_segments", "given_labels", "largest_part"]

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures whose parts contradict one another are refused with what to check."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from perception_node import Observation, Perception, PinholeCamera, load_weights
+from scene_graph import GraphStatus
+from sim_node.layouts import random_layout
+from sim_node.world import World
+
+PERCEPTION = Perception(load_weights())
+
+
+@pytest.fixture(scope="module")
+def observations() -> Iterator[list[Observation]]:
+    with World() as world:
+        config = world.config.camera
+        camera = PinholeCamera(
+            config.intrinsics, config.world_from_optical, config.width, config.height
+        )
+        found = []
+        for seed in range(4):
+            world.reset(random_layout(seed, 3 + seed, 3), seed)
+            frame = world.render()
+            found.append(Observation(frame.rgb, frame.labels, frame.depth, camera))
+        yield found
+
+
+def refusal(observation: Observation) -> str:
+    perceived = PERCEPTION.perceive(observation)
+    assert perceived.status is GraphStatus.BAD_IMAGE
+    return perceived.message
+
+
+def test_scenes_as_they_are_are_confident(observations: list[Observation]) -> None:
+    for observation in observations:
+        assert PERCEPTION.perceive(observation).status is GraphStatus.CONFIDENT
+
+
+def test_fault_13_colours_that_are_noise_are_said_to_be(observations: list[Observation]) -> None:
+    rng = np.random.default_rng(0)
+    for observation in observations:
+        noise = rng.integers(0, 256, observation.rgb.shape).astype(np.uint8)
+        assert "no common colour" in refusal(replace(observation, rgb=noise))
+
+
+def test_grain_is_no_noise(observations: list[Observation]) -> None:
+    rng = np.random.default_rng(1)
+    for observation in observations:
+        grain = rng.normal(0.0, 10.0, observation.rgb.shape)
+        rgb = np.clip(observation.rgb + grain, 0, 255).astype(np.uint8)
+        assert PERCEPTION.perceive(replace(observation, rgb=rgb)).status is GraphStatus.CONFIDENT
+
+
+def test_fault_13_scattered_labels_lead_to_the_segmentation(
+    observations: list[Observation],
+) -> None:
+    rng = np.random.default_rng(2)
+    for observation in observations:
+        labels = observation.labels
+        assert labels is not None
+        some = rng.choice(np.unique(labels[labels > 0]), labels.shape)
+        scattered = np.where(labels > 0, some, 0).astype(labels.dtype)
+        assert "camera/segmentation" in refusal(replace(observation, labels=scattered))
+
+
+@pytest.mark.parametrize(("nearer", "side"), [(0.05, "above"), (-0.05, "below")])
+def test_fault_13_a_table_that_is_elsewhere_leads_to_depth_and_calibration(
+    observations: list[Observation], nearer: float, side: str
+) -> None:
+    for observation in observations:
+        assert observation.depth is not None
+        message = refusal(replace(observation, depth=observation.depth - nearer))
+        assert f"mm {side} it" in message
+        assert "camera/extrinsics" in message
+
+
+def test_noise_of_a_depth_camera_moves_no_table(observations: list[Observation]) -> None:
+    rng = np.random.default_rng(3)
+    for observation in observations:
+        assert observation.depth is not None
+        depth = observation.depth + rng.normal(0.0, 0.002, observation.depth.shape)
+        perceived = PERCEPTION.perceive(replace(observation, depth=depth))
+        assert "table is measured" not in perceived.message
