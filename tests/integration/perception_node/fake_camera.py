@@ -13,9 +13,14 @@ from sensor_msgs.msg import CameraInfo, Image
 from tamp_interfaces.msg import SceneGraph
 from tamp_runtime.qos import LATCHED, NEWEST
 
+from scene_graph import Stacks
 from sim_node.camera import Frame
 from sim_node.conversions import camera_messages, extrinsics_message
 from sim_node.scene import CameraConfig
+
+#: Scenes that are shown.
+TOWERS: Stacks = (("red_box", "blue_box"), ("green_box",), ("yellow_box", "purple_box"))
+OTHER: Stacks = ((), ("green_box", "blue_box", "red_box"), ("purple_box", "yellow_box"))
 
 #: The images of a frame and their camera info, in the order of :meth:`FakeCamera.messages`.
 TOPICS = {

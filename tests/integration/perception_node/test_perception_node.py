@@ -4,63 +4,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from fake_camera import TOPICS, FakeCamera
+from fake_camera import OTHER, TOPICS, TOWERS, FakeCamera
 from rclpy.node import Node
-from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
-from ros2_run import Start, finish
-from sensor_msgs.msg import Image
 from tamp_interfaces.msg import SceneGraph
-from tamp_interfaces.srv import ImageToSceneGraph
 from tamp_runtime.messages.scene_graph import graph_from_message
-from tamp_runtime.qos import RELIABLE, SENSOR_DATA
-from visualization_msgs.msg import Marker, MarkerArray
+from tamp_runtime.qos import RELIABLE
 
 from perception_node.node import PerceptionNode
 from scene_graph import Stacks, up_relations
 from sim_node.camera import Frame
 from sim_node.conversions import camera_messages
 from sim_node.scene import CameraConfig
-from sim_node.world import World
-
-TOWERS: Stacks = (("red_box", "blue_box"), ("green_box",), ("yellow_box", "purple_box"))
-OTHER: Stacks = ((), ("green_box", "blue_box", "red_box"), ("purple_box", "yellow_box"))
-
-
-@pytest.fixture(scope="module")
-def frames() -> dict[Stacks, Frame]:
-    rendered = {}
-    with World() as world:
-        for layout in (TOWERS, OTHER):
-            world.reset(layout)
-            rendered[layout] = world.render()
-    return rendered
-
-
-@pytest.fixture
-def perception(ros_context: Any) -> PerceptionNode:
-    """In a namespace, as every name is relative."""
-    return ros_context.add(PerceptionNode(context=ros_context.context, namespace="/cell"))
-
-
-@pytest.fixture
-def camera(ros_context: Any, perception: PerceptionNode) -> FakeCamera:
-    node = ros_context.add(Node("fake_camera", context=ros_context.context, namespace="/cell"))
-    camera = FakeCamera(ros_context, node)
-    ros_context.wait_until(
-        lambda: (
-            all(publisher.get_subscription_count() for publisher in camera.publishers)
-            and perception.count_subscribers("scene_graph")
-        ),
-        what="discovery",
-    )
-    return camera
 
 
 def test_a_frame_becomes_a_confident_graph_of_its_time(
@@ -228,86 +188,3 @@ def test_of_many_frames_the_newest_counts(camera: FakeCamera, frames: dict[Stack
     assert graph_from_message(message).stacks() == OTHER
     stamps = [graph.header.stamp.sec for graph in camera.graphs]
     assert stamps == sorted(set(stamps))
-
-
-def test_pictures_and_markers_are_for_those_who_look(
-    ros_context: Any, camera: FakeCamera, perception: PerceptionNode, frames: dict[Stacks, Frame]
-) -> None:
-    pictures: list[Image] = []
-    markers: list[MarkerArray] = []
-    camera.node.create_subscription(Image, "scene_graph/image", pictures.append, SENSOR_DATA)
-    camera.node.create_subscription(MarkerArray, "scene_graph/markers", markers.append, RELIABLE)
-    ros_context.wait_until(
-        lambda: (
-            perception.count_subscribers("scene_graph/image")
-            and perception.count_subscribers("scene_graph/markers")
-        )
-    )
-    camera.calibrate()
-
-    def seen() -> bool:
-        camera.show(frames[TOWERS])
-        return bool(pictures) and any(len(array.markers) > 1 for array in markers)
-
-    ros_context.wait_until(seen)
-    assert pictures[-1].encoding == "rgb8" and len(pictures[-1].data) < 500_000
-    # Fault 12: a picture is in the frame of the camera that took it.
-    assert {picture.header.frame_id for picture in pictures} == {"camera_optical_frame"}
-    shown = markers[-1].markers
-    assert shown[0].action == Marker.DELETEALL
-    assert {marker.text for marker in shown if marker.text} == {n for s in TOWERS for n in s}
-    assert sum(marker.type == Marker.CUBE for marker in shown) == 5
-
-
-def test_a_goal_image_is_interpreted(
-    ros_context: Any, camera: FakeCamera, frames: dict[Stacks, Frame]
-) -> None:
-    client = camera.node.create_client(ImageToSceneGraph, "image_to_scene_graph")
-    assert client.wait_for_service(10.0)
-
-    def ask(request: ImageToSceneGraph.Request) -> SceneGraph:
-        future = client.call_async(request)
-        ros_context.wait_until(future.done)
-        return future.result().scene_graph
-
-    image, _, segmentation, *_ = camera.messages(frames[OTHER])
-    request = ImageToSceneGraph.Request(image=image, segmentation=segmentation)
-    graph = graph_from_message(ask(request))
-    assert graph.places == ()  # no camera is known yet: left-relations instead
-    camera.calibrate_and_show(frames[TOWERS])
-    answer = ask(request)
-    assert answer.status == SceneGraph.CONFIDENT
-    assert graph_from_message(answer).stacks() == OTHER
-    answer = ask(ImageToSceneGraph.Request(image=image))
-    assert answer.status == SceneGraph.BAD_IMAGE
-    assert "encoding" in answer.message
-
-
-def test_parameters_are_checked_and_take_effect(
-    camera: FakeCamera, perception: PerceptionNode, frames: dict[Stacks, Frame]
-) -> None:
-    assert camera.calibrate_and_show(frames[TOWERS]).status == SceneGraph.CONFIDENT
-    for name, value in (
-        ("min_confidence", 1.5),
-        ("stack_positions", [0.5, 0.0]),
-        ("stack_positions", [0.5, 0.0, 0.0, 0.5, 0.0, 0.0]),
-        ("weights", "/elsewhere"),
-    ):
-        result = perception.set_parameters([Parameter(name, value=value)])[0]
-        assert not result.successful and result.reason
-    assert perception.set_parameters([Parameter("min_confidence", value=1.0)])[0].successful
-    assert camera.show(frames[TOWERS]).status == SceneGraph.LOW_CONFIDENCE
-    two_places = [0.5, -0.15, 0.0, 0.5, 0.0, 0.0]
-    assert perception.set_parameters([Parameter("stack_positions", value=two_places)])[0].successful
-    message = camera.show(frames[TOWERS])
-    assert message.status == SceneGraph.UNSTABLE
-    assert "3 stacks are seen but there are 2 places" in message.message
-
-
-def test_bad_weights_are_refused_with_a_sentence(start: Start, tmp_path: Path) -> None:
-    path = tmp_path / "weights.safetensors"
-    ended = finish(
-        start("perception_node", "perception_node", "--ros-args", "-p", f"weights:={path}")
-    )
-    assert ended.code == 2
-    assert f"weights file {path}" in ended.stderr and "make train-visual" in ended.stderr

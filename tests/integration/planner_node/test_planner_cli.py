@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -21,8 +20,7 @@ from tamp_interfaces.srv import PlanToGoal
 from planner_node.cli import commands
 from planner_node.cli.arm_text import describe_arm
 from planner_node.cli.goal_image import ImageFileError, read_goal_image
-from planner_node.cli.plan_text import describe_plan, describe_scene
-from planner_node.cli.progress import ProgressPrinter
+from planner_node.cli.plan_text import describe_scene
 
 Result = AchieveGoal.Result
 Feedback = AchieveGoal.Feedback
@@ -278,48 +276,3 @@ def test_a_scene_without_stacks_is_told_by_its_relations() -> None:
     message.relations = message.relations[:1]
     message.relations[0].object = "red_box"
     assert describe_scene(message) == "blue_box up red_box"
-
-
-class Terminal(io.StringIO):
-    def isatty(self) -> bool:
-        return True
-
-
-def moving(progress: float, phase: str = "pick", plan: bool = True) -> AchieveGoal.Feedback:
-    motion = MotionStatus(
-        state=MotionStatus.EXECUTING,
-        moves_total=1,
-        phase=phase,
-        object_name="red_box",
-        progress=progress,
-    )
-    if not plan:  # all feedback but the first on a plan
-        later = SymbolicPlan(plan_id=PLAN.plan_id)
-        return Feedback(stage=Feedback.EXECUTING, motion=motion, plan=later)
-    return Feedback(stage=Feedback.EXECUTING, motion=motion, plan=PLAN, states=STATES)
-
-
-def test_progress_prints_what_is_new() -> None:
-    stream = io.StringIO()
-    printer = ProgressPrinter(stream)
-    for _ in range(2):
-        printer.show(Feedback(stage=Feedback.PERCEIVING, message="reading the goal"))
-    for progress in (0.1, 0.2):
-        printer.show(moving(progress))
-    printer.show(moving(0.3, "place", plan=False))
-    printer.finish()
-    assert stream.getvalue().splitlines() == [
-        "perceive  reading the goal",
-        "execute   move 1 of 1: pick red_box",
-        *[f"{'':9} {line}" for line in describe_plan(PLAN, STATES)],
-        "execute   move 1 of 1: place red_box",
-    ]
-
-
-def test_a_terminal_gets_a_bar_that_makes_room_for_the_next_line() -> None:
-    stream = Terminal()
-    printer = ProgressPrinter(stream)
-    printer.show(moving(0.5))
-    assert stream.getvalue().endswith("[###############---------------]  50%")
-    printer.finish()
-    assert stream.getvalue().endswith("\r\033[K")

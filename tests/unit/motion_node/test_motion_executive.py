@@ -240,3 +240,18 @@ def test_one_plan_after_the_other_and_the_settings_of_each(bench: Bench) -> None
     bench.settings = ExecutionSettings(joint_state_timeout=1.0)
     assert bench.carry_out().reason is MotionReason.TRACKING_LOST
     assert bench.reports[0].progress == 0.0
+
+
+def test_fault_6_nothing_sets_out_while_two_do_the_work_of_one(bench: Bench) -> None:
+    bench.planner.while_solving = lambda: setattr(bench, "conflict", "there are two of motion_node")
+    end = bench.carry_out()
+    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.CONFLICT)
+    assert end.message == "there are two of motion_node"
+    assert not bench.arm.sent
+
+
+def test_a_node_that_ends_leaves_the_trajectory_to_the_arm(bench: Bench) -> None:
+    bench.when(PLACE, 0, lambda: setattr(bench.arm, "closed", True))
+    bench.executive.carry_out(bench.plan, bench.stop, bench.reports.append)
+    assert not bench.reports[-1].state.ended
+    assert len(bench.arm.sent) == 1

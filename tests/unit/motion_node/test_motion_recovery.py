@@ -290,18 +290,3 @@ def test_fault_13_joint_states_that_cannot_be_used_are_not_called_missing(bench:
     assert end.message.startswith(
         "joint_states arrive without finite positions of panda_joint3, for 15 s"
     )
-
-
-def test_fault_6_nothing_sets_out_while_two_do_the_work_of_one(bench: Bench) -> None:
-    bench.planner.while_solving = lambda: setattr(bench, "conflict", "there are two of motion_node")
-    end = bench.carry_out()
-    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.CONFLICT)
-    assert end.message == "there are two of motion_node"
-    assert not bench.arm.sent
-
-
-def test_a_node_that_ends_leaves_the_trajectory_to_the_arm(bench: Bench) -> None:
-    bench.when(PLACE, 0, lambda: setattr(bench.arm, "closed", True))
-    bench.executive.carry_out(bench.plan, bench.stop, bench.reports.append)
-    assert not bench.reports[-1].state.ended
-    assert len(bench.arm.sent) == 1

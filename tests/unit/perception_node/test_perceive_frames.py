@@ -1,22 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frames become scene graphs with an honest verdict; the simulator's truth is the oracle."""
 
-import re
-from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import pybullet
 import pytest
+from seen_worlds import PERCEPTION, TOWERS, camera_of, move_hand, perceive, put
 
 from perception_node import (
     Observation,
-    Perceived,
-    Perception,
-    PerceptionConfig,
-    PinholeCamera,
-    load_weights,
 )
 from perception_node.blocks.measure import measure_block
 from perception_node.blocks.surface import BlockSurface, NoSurfaceError
@@ -24,55 +17,6 @@ from scene_graph import LEFT, GraphStatus, Relation, Stacks, left_relations, up_
 from sim_node.camera import Frame
 from sim_node.layouts import random_layout
 from sim_node.world import World
-
-PERCEPTION = Perception(load_weights())
-TOWERS: Stacks = (("red_box", "blue_box", "green_box"), (), ("yellow_box", "purple_box"))
-
-
-@pytest.fixture(scope="module")
-def world() -> Iterator[World]:
-    with World() as world:
-        yield world
-
-
-def camera_of(world: World) -> PinholeCamera:
-    config = world.config.camera
-    return PinholeCamera(config.intrinsics, config.world_from_optical, config.width, config.height)
-
-
-def perceive(world: World, frame: Frame | None = None) -> Perceived:
-    frame = frame or world.render()
-    return PERCEPTION.perceive(Observation(frame.rgb, frame.labels, frame.depth, camera_of(world)))
-
-
-def put(
-    world: World,
-    name: str,
-    offset: tuple[float, float, float],
-    turn: tuple[float, float, float] = (0.0, 0.0, 0.0),
-) -> None:
-    """Puts a block elsewhere: as if somebody held it there."""
-    position, _ = world.block_pose(name)
-    pybullet.resetBasePositionAndOrientation(
-        world.body(name),
-        np.add(position, offset).tolist(),
-        pybullet.getQuaternionFromEuler(turn),
-        physicsClientId=world.client,
-    )
-
-
-def move_hand(world: World, position: tuple[float, float, float]) -> None:
-    """The arm with its hand pointing down at a position [m]."""
-    joints = pybullet.calculateInverseKinematics(
-        world.robot,
-        11,
-        position,
-        pybullet.getQuaternionFromEuler((np.pi, 0.0, 0.0)),
-        maxNumIterations=200,
-        physicsClientId=world.client,
-    )
-    for index, angle in zip(world.joint_indices, joints):
-        pybullet.resetJointState(world.robot, index, angle, 0.0, physicsClientId=world.client)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -248,105 +192,3 @@ class TestBlocksThatDoNotStand:
         assert perceived.message.startswith("the green block lies on its side or leans")
         move_hand(world, (0.5, 0.15, 0.2))
         assert perceive(world).status is GraphStatus.OCCLUDED
-
-
-class TestFault13PicturesThatTellNothing:
-    """Each is answered by what is wrong with it, not by what blocks seem to do in it."""
-
-    @pytest.mark.parametrize(
-        ("change", "sentence"),
-        [
-            (lambda frame: replace(frame, rgb=0 * frame.rgb), "the picture is black; is the lens"),
-            (lambda frame: replace(frame, rgb=frame.rgb // 10), "the picture is too dark to tell"),
-            (lambda frame: replace(frame, rgb=0 * frame.rgb + 255), "the picture is white"),
-            (
-                lambda frame: replace(frame, depth=1000 * frame.depth),
-                "the depth is 1... in the middle, which cannot be metres; .* millimetres",
-            ),
-        ],
-        ids=["black", "dark", "white", "millimetres"],
-    )
-    def test_it_is_refused_with_the_cause(
-        self, world: World, change: Callable[[Frame], Frame], sentence: str
-    ) -> None:
-        world.reset(TOWERS)
-        perceived = perceive(world, change(world.render()))
-        assert perceived.status is GraphStatus.BAD_IMAGE
-        assert re.match(sentence, perceived.message), perceived.message
-        assert perceived.graph.objects == ()
-
-    def test_with_a_third_of_the_light_colours_are_still_told(self, world: World) -> None:
-        world.reset((("red_box", "blue_box"), ("green_box",), ()))
-        frame = world.render()
-        assert perceive(world, replace(frame, rgb=frame.rgb // 3)).graph.stacks() == (
-            ("red_box", "blue_box"),
-            ("green_box",),
-            (),
-        )
-
-    def test_a_camera_that_is_lower_than_it_says_puts_blocks_below_the_table(
-        self, world: World
-    ) -> None:
-        world.reset((("red_box", "blue_box"), ("green_box",), ()))
-        frame, camera = world.render(), camera_of(world)
-        lower = camera.world_from_optical - np.outer([0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.012])
-        perceived = PERCEPTION.perceive(
-            Observation(
-                frame.rgb, frame.labels, frame.depth, replace(camera, world_from_optical=lower)
-            )
-        )
-        assert perceived.status is GraphStatus.UNSTABLE
-        assert re.search("12 mm below the table; check camera/extrinsics", perceived.message)
-
-
-class TestBadFrames:
-    @pytest.fixture
-    def frame(self, world: World) -> Frame:
-        world.reset(TOWERS)
-        return world.render()
-
-    def check(self, world: World, frame: Frame, sentence: str) -> None:
-        perceived = perceive(world, frame)
-        assert perceived.status is GraphStatus.BAD_IMAGE
-        assert sentence in perceived.message
-        assert perceived.graph.objects == ()
-
-    def test_images_that_do_not_fit_together(self, world: World, frame: Frame) -> None:
-        depth = frame.depth[:, :100]
-        self.check(world, replace(frame, depth=depth), "depth is 100x256")
-
-    @pytest.mark.parametrize("value", [0.0, np.nan])
-    def test_a_block_without_depth(self, world: World, frame: Frame, value: float) -> None:
-        depth = frame.depth.copy()
-        depth[frame.labels == world.label("blue_box")] = value
-        self.check(world, replace(frame, depth=depth), "depth of the object with label")
-
-    @pytest.mark.parametrize("value", [0.0, np.nan])
-    def test_some_missing_depth_does_no_harm(
-        self, world: World, frame: Frame, value: float
-    ) -> None:
-        depth = frame.depth.copy()
-        depth[np.random.default_rng(0).random(depth.shape) < 0.1] = value
-        perceived = perceive(world, replace(frame, depth=depth))
-        assert perceived.graph.stacks() == TOWERS
-        assert perceived.status is GraphStatus.CONFIDENT, perceived.message
-
-
-def test_damaged_masks_lower_the_confidence(world: World) -> None:
-    world.reset(TOWERS)
-    frame = world.render()
-    labels = frame.labels.copy()
-    rows, columns = np.nonzero(labels == world.label("purple_box"))
-    labels[rows[columns > columns.mean()], columns[columns > columns.mean()]] = 0
-    perceived = perceive(world, replace(frame, labels=labels))
-    assert perceived.status is not GraphStatus.CONFIDENT
-
-
-def test_a_graph_below_the_least_confidence_says_which_block(world: World) -> None:
-    world.reset(TOWERS)
-    strict = PERCEPTION.configured(PerceptionConfig(min_confidence=1.0))
-    frame = world.render()
-    perceived = strict.perceive(Observation(frame.rgb, frame.labels, frame.depth, camera_of(world)))
-    assert perceived.status is GraphStatus.LOW_CONFIDENCE
-    worst = min(perceived.graph.objects, key=lambda item: item.confidence)
-    assert worst.name in perceived.message and "required: 1.00" in perceived.message
