@@ -86,3 +86,17 @@ def test_noise_of_a_depth_camera_moves_no_table(observations: list[Observation])
         depth = observation.depth + rng.normal(0.0, 0.002, observation.depth.shape)
         perceived = PERCEPTION.perceive(replace(observation, depth=depth))
         assert "table is measured" not in perceived.message
+
+
+def test_masks_that_lost_pixels_and_gained_specks_are_read_all_the_same(
+    observations: list[Observation],
+) -> None:
+    rng = np.random.default_rng(4)
+    for observation in observations:
+        labels = observation.labels
+        assert labels is not None
+        damaged = np.where(rng.random(labels.shape) < 0.5, 0, labels)
+        specks = (labels == 0) & (rng.random(labels.shape) < 0.03)
+        damaged[specks] = rng.choice(np.unique(labels[labels > 0]), np.count_nonzero(specks))
+        perceived = PERCEPTION.perceive(replace(observation, labels=damaged))
+        assert perceived.graph.stacks() == PERCEPTION.perceive(observation).graph.stacks()

@@ -11,18 +11,18 @@ from numpy.typing import NDArray
 
 from perception_node.errors import BadImageError
 
-from .segments import Mask, Segments
+from .segments import Segment, Segments
 
-#: Least share of its convex outline that a block's mask covers. Boxes, cylinders and spheres fill
-#: theirs; half of it may be hidden by other blocks.
-MIN_FILL: Final = 0.4
+#: Greatest share of a block's convex outline that may have other blocks' labels: none but at its
+#: edge has, unless labels are scattered. (Pixels that lost their label do little harm.)
+MAX_OTHERS: Final = 0.4
 #: Greatest middle range of a block's chromaticity (share of a channel in the sum of the three).
 #: One colour has 0.01, with grain of 20 grey levels up to 0.16 where it is dark; noise has 0.24.
 MAX_COLOR_RANGE: Final = 0.2
 
 
 def check_segments(rgb: NDArray[np.uint8], segments: Segments) -> None:
-    """Refuses masks that are scattered or join blocks, and blocks that are of every colour.
+    """Refuses masks that are scattered among one another, and blocks that are of every colour.
 
     Args:
         rgb: shape (height, width, 3).
@@ -31,10 +31,10 @@ def check_segments(rgb: NDArray[np.uint8], segments: Segments) -> None:
         BadImageError: names the label, and what to check.
     """
     for segment in segments:
-        if (fill := _fill(segment.mask)) < MIN_FILL:
+        if (others := _others(segments.label_image, segment)) > MAX_OTHERS:
             raise BadImageError(
-                f"label {segment.label} covers only {fill:.0%} of its outline: it is scattered, or "
-                "joins blocks that stand apart; check camera/segmentation"
+                f"{others:.0%} of what label {segment.label} surrounds has other labels: they are "
+                "scattered; check camera/segmentation"
             )
         if _color_range(rgb[segment.part]) > MAX_COLOR_RANGE:
             raise BadImageError(
@@ -43,12 +43,14 @@ def check_segments(rgb: NDArray[np.uint8], segments: Segments) -> None:
             )
 
 
-def _fill(mask: Mask) -> float:
-    """The share of its convex outline that a mask covers, 0..1."""
-    points = np.argwhere(mask)[:, ::-1].astype(np.int32)
-    region = np.zeros(mask.shape, np.uint8)
+def _others(label_image: NDArray[np.integer], segment: Segment) -> float:
+    """The share of the largest part's convex outline that has the labels of others, 0..1."""
+    points = np.argwhere(segment.part)[:, ::-1].astype(np.int32)
+    region = np.zeros(label_image.shape, np.uint8)
     cv2.fillConvexPoly(region, cv2.convexHull(points), 1)
-    return len(points) / max(1, int(np.count_nonzero(region)))
+    inside = label_image[region.astype(bool)]
+    others = np.count_nonzero((inside != 0) & (inside != segment.label))
+    return others / max(1, inside.size)
 
 
 def _color_range(pixels: NDArray[np.uint8]) -> float:
