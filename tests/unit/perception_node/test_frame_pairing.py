@@ -67,6 +67,15 @@ def test_fault_13_a_silent_stream_is_named() -> None:
     assert pairing.problem(TOPICS).startswith("no camera/depth arrives")
 
 
+def test_fault_13_a_stream_that_stopped_after_one_more_message_is_named_as_silent() -> None:
+    pairing = FramePairing(STREAMS)
+    feed(pairing, 1, *STREAMS)
+    feed(pairing, 2, "image", "depth")  # its segmentation was lost
+    for stamp in range(3, 13):
+        feed(pairing, stamp, "depth", "segmentation")
+    assert pairing.problem(TOPICS).startswith("no camera/image arrives")
+
+
 def test_fault_13_constant_stamps_of_all_streams_are_told() -> None:
     pairing = FramePairing(STREAMS)
     assert feed(pairing, 7, *STREAMS) == [7]

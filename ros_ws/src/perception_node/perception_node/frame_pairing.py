@@ -9,6 +9,9 @@ from typing import Any, Final
 
 #: Incomplete sets that are kept waiting; more arrive only if a stream is broken.
 _WAITING: Final = 8
+#: A stream of which so many times less came than of another one is silent; its last message may
+#: have been one of a set that was lost otherwise.
+_SILENT: Final = 8
 
 
 @dataclass(frozen=True)
@@ -104,7 +107,8 @@ class FramePairing:
         def named(streams: Iterable[str]) -> str:
             return ", ".join(topics[stream] for stream in sorted(streams))
 
-        if silent := [name for name, seen in self._since.items() if seen.count == 0]:
+        most = max(seen.count for seen in self._since.values())
+        if silent := [n for n, seen in self._since.items() if seen.count * _SILENT <= most]:
             return f"no {named(silent)} arrives; is the camera's driver complete?"
         if still := [name for name, seen in self._since.items() if seen.stands_still]:
             return (
