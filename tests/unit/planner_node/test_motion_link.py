@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 from loop_bench import START, FakeClock, sighting_of
-from tamp_runtime.motion_report import MotionReport, MotionState
+from tamp_runtime.motion_report import ArmPlace, MotionReport, MotionState
 
 from planner_node.errors import MotionBusyError, MotionSilentError
 from planner_node.goals import complete_goal
@@ -281,3 +281,21 @@ def test_a_stop_names_the_plan() -> None:
     plan_id = linked.start()
     linked.link.stop(plan_id)
     assert linked.stopped == [plan_id]
+
+
+def test_a_report_that_comes_again_does_not_say_how_the_arm_is_now() -> None:
+    link = Linked().link
+    second = 1_000_000_000
+    moving = MotionReport("a", EXECUTING, arm=ArmPlace.MOVING, held="red_box", stamp=2 * second)
+    link.receive(moving)
+    link.receive(MotionReport("a", SUCCEEDED, arm=ArmPlace.HOME, stamp=5 * second))
+    link.receive(moving)
+    assert (link.newest.arm, link.newest.held) == (ArmPlace.HOME, "")
+
+
+def test_a_clock_that_starts_anew_is_followed() -> None:
+    link = Linked().link
+    second = 1_000_000_000
+    link.receive(MotionReport("a", SUCCEEDED, arm=ArmPlace.HOME, stamp=500 * second))
+    link.receive(MotionReport(arm=ArmPlace.MOVING, stamp=2 * second))
+    assert link.newest.arm == ArmPlace.MOVING

@@ -20,6 +20,9 @@ DISCOVERY_SECONDS: Final = 5.0
 RESTART_SECONDS: Final = 0.5
 #: The motion node beats once a second; after this long nothing is known of the arm any more [s].
 STALE_SECONDS: Final = 5.0
+#: A report this much older than the newest was overtaken; one older still is of a clock that
+#: started anew [ns].
+OVERTAKEN_NANOSECONDS: Final = 10_000_000_000
 #: Somebody who cancels waits no longer than this for a motion node that says nothing [s].
 CANCEL_SECONDS: Final = 8.0
 

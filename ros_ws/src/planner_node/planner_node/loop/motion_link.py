@@ -14,7 +14,7 @@ from tamp_runtime.motion_report import ArmPlace, MotionReport, MotionState
 from ..errors import MotionBusyError, MotionSilentError
 from ..settings import Settings
 from .clock import Clock
-from .execution import STALE_SECONDS, Execution, Foreign, state_of
+from .execution import OVERTAKEN_NANOSECONDS, STALE_SECONDS, Execution, Foreign, state_of
 from .plan import Plan
 from .report import NO_REPORT
 from .scene_watch import POLL_SECONDS
@@ -118,7 +118,10 @@ class MotionLink:
         """Takes what the motion node reports, on whatever plan."""
         with self._changed:
             heard = self._clock.now()
-            self._newest, self._heard = report, heard
+            self._heard = heard
+            # One that was overtaken says how the arm was, unless the clock started anew.
+            if not 0 < self._newest.stamp - report.stamp < OVERTAKEN_NANOSECONDS:
+                self._newest = report
             self._reports += 1
             self._knows_arm = self._knows_arm or report.arm != ArmPlace.UNKNOWN
             if report.state.ended:
