@@ -70,7 +70,7 @@ def search(
         algorithm: one of :data:`planner_node.search.ALGORITHMS`.
 
     Raises:
-        UnreachableError: proven, by search or because no arrangement of the blocks fulfils the goal.
+        UnreachableError: proven, by search or as no arrangement of the blocks fulfils the goal.
         SearchLimitError: ``max_expansions`` states were expanded before that.
         SearchCancelledError: ``cancelled`` returned True.
         ValueError: there is no such algorithm.
