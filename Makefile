@@ -43,10 +43,10 @@ eval-tasks: setup  ## success from pixels to tower; N= BLOCKS= RTF= RESUME=1 QUI
 	@$(RUN) python benchmarks/eval_tasks.py $(if $(N),--n $(N)) $(if $(BLOCKS),--blocks $(BLOCKS)) \
 	  $(if $(RTF),--real-time-factor $(RTF)) $(if $(RESUME),--resume) $(if $(BASELINE),--baseline "$(BASELINE)")
 
-eval-faults: setup  ## faults of every kind in every phase, and what becomes of the task; ONLY= PHASE= SEED= TRIALS= RTF= RESUME=1 QUICK=1
+eval-faults: setup  ## faults of every kind in every phase, and what becomes of the task; ONLY= PHASE= SEED= TRIALS= JOBS= RTF= RESUME=1 QUICK=1
 	@$(RUN) python benchmarks/eval_faults.py $(if $(ONLY),--only "$(ONLY)") $(if $(PHASE),--phase $(PHASE)) \
 	  $(if $(SEED),--seed $(SEED)) $(if $(TRIALS),--trials $(TRIALS)) $(if $(RTF),--real-time-factor $(RTF)) \
-	  $(if $(RESUME),--resume) $(ARGS)
+	  $(if $(JOBS),--jobs $(JOBS)) $(if $(RESUME),--resume) $(ARGS)
 
 bench-planner: setup  ## search times, lengths and bounds; FD=venv with up-fast-downward QUICK=1
 	@$(RUN) python benchmarks/bench_planner.py $(if $(FD),--fd "$(FD)")

@@ -4,8 +4,9 @@
 Each trial is a small task on a running graph in a DDS domain of its own. The fault is injected by
 relays between the nodes, to their processes, by clients or in the world; the answer is judged by
 ground truth and by whether it names the cause; then a plain task must succeed. Stops cleanly on
-Ctrl-C; RESUME=1 goes on. ONLY=NAME (or part of one), PHASE= and SEED= run single trials again,
-which writes nothing into benchmarks/results.
+Ctrl-C; RESUME=1 goes on; JOBS=3 runs three graphs side by side, which mostly wait.
+ONLY=NAME (or part of one), PHASE= and SEED= run single trials again, which writes nothing into
+benchmarks/results.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from __future__ import annotations
 import argparse
 import json
 import signal
+import subprocess
 import sys
 import time
 import traceback
@@ -94,15 +96,54 @@ def plan_tasks(
     return sorted(tasks, key=lambda task: task.groups)
 
 
-def run_tasks(tasks: Sequence[Task], real_time_factor: float) -> None:
-    """Runs those whose results are not there yet; each result goes into its file."""
+def run_tasks(tasks: Sequence[Task], real_time_factor: float, share: int = 0) -> None:
+    """Runs those whose results are not there yet; each result goes into its file.
+
+    Args:
+        share: which of the shares of JOBS these are; names the folder of the nodes' logs.
+    """
     left = [task for task in tasks if not task.path.exists()]
-    with tqdm(total=len(tasks), initial=len(tasks) - len(left), unit="trial") as progress:
+    folder, done = FOLDER / f"graph{share}", len(tasks) - len(left)
+    with tqdm(total=len(tasks), initial=done, unit="trial", position=share) as progress:
         for groups, alike in groupby(left, key=lambda task: task.groups):
             waiting = list(alike)
             while waiting:
-                with Graph(FOLDER, groups, real_time_factor) as setting:
+                with Graph(folder, groups, real_time_factor) as setting:
                     waiting = _until_poisoned(setting, waiting, progress)
+
+
+def run_side_by_side(jobs: int) -> bool:
+    """Runs this program once for each share of the trials; whether all of them came to their end.
+
+    Each has its own graph in a DDS domain of its own. Ctrl-C reaches all, and all are waited for.
+    """
+    command = [sys.executable, *sys.argv, "--resume"]
+    shares = [
+        subprocess.Popen([*command, "--share", str(share), "--jobs", str(jobs)])
+        for share in range(jobs)
+    ]
+    interrupted = False
+    for share in shares:
+        while share.poll() is None:
+            try:
+                share.wait()
+            except KeyboardInterrupt:
+                interrupted = True
+    return not interrupted and not any(share.returncode for share in shares)
+
+
+def run_share(tasks: Sequence[Task], real_time_factor: float, share: int = 0) -> bool:
+    """:func:`run_tasks` with a ROS context of its own; whether it came to its end."""
+    use_own_domain()
+    prepare_process()
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        run_tasks(tasks, real_time_factor, share)
+    except KeyboardInterrupt:
+        return False
+    finally:
+        rclpy.try_shutdown()
+    return True
 
 
 def _until_poisoned(setting: Setting, tasks: list[Task], progress: Any) -> list[Task]:
@@ -144,6 +185,8 @@ def main() -> int:
     parser.add_argument("--seed", type=int, help="one trial a kind with this seed")
     parser.add_argument("--trials", type=int, default=5, help="of each kind")
     parser.add_argument("--real-time-factor", type=float, default=4.0)
+    parser.add_argument("--jobs", type=int, default=1, help="graphs side by side")
+    parser.add_argument("--share", type=int, help=argparse.SUPPRESS)
     parser.add_argument("--resume", action="store_true", help="keep the trials done so far")
     parser.add_argument("--report", action="store_true", help="only write what has been measured")
     options = parser.parse_args()
@@ -163,19 +206,20 @@ def main() -> int:
         for task in tasks:
             task.path.unlink(missing_ok=True)
     started = time.monotonic()
+    # Where a script put this into the background, SIGINT is ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    if options.share is not None:
+        tasks = tasks[options.share :: options.jobs]
+        return 0 if run_share(tasks, options.real_time_factor, options.share) else 130
     if not options.report:
-        use_own_domain()
-        prepare_process()
-        # Where a script put this into the background, SIGINT is ignored.
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-        try:
-            run_tasks(tasks, options.real_time_factor)
-        except KeyboardInterrupt:
+        whole = (
+            run_side_by_side(options.jobs)
+            if options.jobs > 1
+            else run_share(tasks, options.real_time_factor)
+        )
+        if not whole:
             print("\nstopped; RESUME=1 goes on with the trials that are left")
             return 130
-        finally:
-            rclpy.try_shutdown()
     trials = [json.loads(task.path.read_text()) for task in tasks if task.path.exists()]
     if not trials:
         print("nothing has been measured yet", file=sys.stderr)

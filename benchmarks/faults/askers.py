@@ -17,7 +17,8 @@ from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.msg import MotionStatus
 from tamp_runtime.messages.stamps import nanoseconds
 
-from planner_node.cli.client import PlannerClient, PlannerUnavailableError
+from planner_node.cli.client import PlannerClient
+from planner_node.cli.unavailable import PlannerUnavailableError
 
 CLAIMS: Final = ("SUCCESS", "ALREADY_TRUE")
 #: What the client says without an answer of the planner.

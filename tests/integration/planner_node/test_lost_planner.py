@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 from ros2_run import PROCESS_TIMEOUT, Process, Spawn, Start, finish
 
-from planner_node.cli.client import PlannerClient, PlannerUnavailableError
+from planner_node.cli.client import PlannerClient
+from planner_node.cli.unavailable import PlannerUnavailableError
 
 #: Accepts every goal and works on it for ever, as a planner whose arm moves on and on.
 PLANNER = """
@@ -26,7 +27,8 @@ from tamp_runtime.presence import Presence
 class Planner(Node):
     def __init__(self):
         super().__init__("planner_node")
-        self.presence = Presence(self, "planner_node")
+        if "mute" not in sys.argv:
+            self.presence = Presence(self, "planner_node")
         self.create_service(PlanToGoal, "plan_to_goal", lambda _request, response: response)
         self.actions = ActionServer(
             self, AchieveGoal, "achieve_goal", self.work,
@@ -38,6 +40,8 @@ class Planner(Node):
     def work(self, goal):
         stopped = threading.Event()
         print("at work", flush=True)
+        if "late" in sys.argv:
+            self.presence = Presence(self, "planner_node")
         while not goal.is_cancel_requested and self.context.ok():
             stopped.wait(0.05)
         if self.context.ok():
@@ -51,8 +55,8 @@ sys.exit(run_node(Planner))
 
 @pytest.fixture
 def start_planner(spawn: Spawn) -> Any:
-    def start() -> Process:
-        process = spawn(sys.executable, "-c", PLANNER)
+    def start(*manners: str) -> Process:
+        process = spawn(sys.executable, "-c", PLANNER, *manners)
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
         return process
@@ -99,6 +103,29 @@ def test_fault_1_a_restarted_planner_does_not_stand_in_for_the_one_that_had_the_
         client.cancel(PROCESS_TIMEOUT)
     # The next goal reaches the new one, not the dead one that DDS still counts.
     client.start("red on blue", timeout=PROCESS_TIMEOUT)
+    client.cancel(PROCESS_TIMEOUT)
+    assert client.result(PROCESS_TIMEOUT).message == "arm at rest"
+
+
+def test_fault_1_one_killed_before_its_first_sign_of_life_is_not_taken_for_its_successor(
+    start_planner: Any, client: PlannerClient
+) -> None:
+    planner = start_planner("mute")
+    client.start("red on blue", timeout=PROCESS_TIMEOUT)
+    planner.kill()
+    start_planner()
+    sentence = lost(client)
+    assert "does not know the goal" in sentence or "planner_node went away" in sentence
+
+
+def test_a_first_sign_of_life_after_the_goal_was_accepted_changes_nothing(
+    start_planner: Any, client: PlannerClient, ros_context: Any
+) -> None:
+    start_planner("mute", "late")
+    client.start("red on blue", timeout=PROCESS_TIMEOUT)
+    ros_context.wait_until(
+        lambda: not client.is_done() and client._followed_by, what="its being followed"
+    )
     client.cancel(PROCESS_TIMEOUT)
     assert client.result(PROCESS_TIMEOUT).message == "arm at rest"
 

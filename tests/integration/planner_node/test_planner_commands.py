@@ -17,7 +17,8 @@ from ros2_run import PROCESS_TIMEOUT, Start, finish
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.srv import PlanToGoal
 
-from planner_node.cli.client import PlannerClient, PlannerUnavailableError
+from planner_node.cli.client import PlannerClient
+from planner_node.cli.unavailable import PlannerUnavailableError
 from planner_node.node import PlannerNode
 
 PACKAGE = "planner_node"

@@ -35,7 +35,7 @@ def test_fault_3_a_motion_node_that_was_restarted_is_planned_for_anew() -> None:
 
 def test_fault_3_a_motion_node_that_falls_silent_and_comes_back_is_looked_at_again() -> None:
     def fall_silent(bench: LoopBench, plan: Plan) -> Iterator[MotionReport]:
-        come_back_after(bench, 45.0)
+        come_back_after(bench, 1.5 * bench.settings.motion_silence_timeout)
         yield from take_up_and_die(bench, plan)
 
     bench = LoopBench(fall_silent)

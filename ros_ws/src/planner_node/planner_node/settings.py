@@ -24,7 +24,7 @@ class Settings:
     perceive_timeout: float = 15.0
     image_service_timeout: float = 10.0
     motion_accept_timeout: float = 30.0
-    motion_silence_timeout: float = 30.0
+    motion_silence_timeout: float = 15.0
     max_replans: int = 5
 
     def update(self, values: Mapping[str, Any]) -> None:

@@ -9,7 +9,8 @@ from collections.abc import Callable
 
 from tamp_interfaces.action import AchieveGoal
 
-from planner_node.cli.client import PlannerClient, PlannerUnavailableError
+from planner_node.cli.client import PlannerClient
+from planner_node.cli.unavailable import PlannerUnavailableError
 from planner_node.errors import PlannerError
 from planner_node.goals import parse_goal, resolve_goal
 from scene_graph import SceneGraph

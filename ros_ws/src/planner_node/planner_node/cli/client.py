@@ -16,6 +16,7 @@ import queue
 import time
 import uuid
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Final
 
 from action_msgs.msg import GoalInfo, GoalStatus
@@ -32,23 +33,14 @@ from tamp_runtime.node_thread import NodeThread
 from tamp_runtime.service_call import arrival, ask
 from unique_identifier_msgs.msg import UUID
 
+from .unavailable import UNKNOWN_GOAL, WHAT_TO_DO, PlannerUnavailableError, no_answer
+
 #: The planner counts as gone when DDS has not seen it for this long [s].
 GONE_SECONDS: Final = 2.0
 #: How often a goal is cancelled of which the planner may not have heard yet.
 CANCEL_ATTEMPTS: Final = 5
 
-#: What a person can do when nobody is there any more who follows the plan.
-WHAT_TO_DO: Final = (
-    "What became of its plan is not known, and the arm may go on with it: stop it with "
-    "'ros2 run planner_node stop', or look at the scene and ask again"
-)
-
-_UNKNOWN_GOAL: Final = f"planner_node does not know the goal; it was started anew. {WHAT_TO_DO}"
 _TERMINATED: Final = CancelGoal.Response.ERROR_GOAL_TERMINATED
-
-
-class PlannerUnavailableError(RuntimeError):
-    """planner_node does not answer; the message says what to do about it."""
 
 
 class PlannerClient:
@@ -68,11 +60,13 @@ class PlannerClient:
         self._planner = Neighbour(node, "planner_node")
         self._plan_client = node.create_client(PlanToGoal, "plan_to_goal")
         self._goal_client = ActionClient(node, AchieveGoal, "achieve_goal")
+        self._send_goal = node.resolve_service_name("achieve_goal/_action/send_goal")
         # rclpy's own way to cancel needs a goal that was accepted, and can cancel no one else's.
         self._cancel_client = node.create_client(CancelGoal, "achieve_goal/_action/cancel_goal")
         self._feedback: queue.SimpleQueue[AchieveGoal.Feedback] = queue.SimpleQueue()
         self._goal_id: UUID | None = None
         self._followed_by: frozenset[str] = frozenset()
+        self._ask_again: Callable[[], Future] | None = None
         self._result: Future | None = None
         self._gone_since: float | None = None
         self._thread = NodeThread(node)
@@ -134,7 +128,7 @@ class PlannerClient:
                 client.server_is_ready,
                 client.wait_for_server,
                 timeout,
-                self._node.resolve_service_name("achieve_goal/_action/send_goal"),
+                self._send_goal,
             )
         except PlannerUnavailableError:
             if self._goal_id:  # one that wakes up later shall not begin with what nobody awaits
@@ -143,6 +137,7 @@ class PlannerClient:
         if not handle.accepted:
             raise PlannerUnavailableError("planner_node refused the goal; its log says why")
         self._followed_by = self._planner.living()
+        self._ask_again = None if self._followed_by else handle.get_result_async
         self._result = self._thread.call(handle.get_result_async)
 
     @property
@@ -181,7 +176,7 @@ class PlannerClient:
         if result.done() or code in (CancelGoal.Response.ERROR_NONE, _TERMINATED):
             return
         if code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
-            raise PlannerUnavailableError(_UNKNOWN_GOAL)
+            raise PlannerUnavailableError(UNKNOWN_GOAL)
         raise PlannerUnavailableError("planner_node refused to cancel the goal; its log says why")
 
     def withdraw(self, timeout: float = 2.0) -> bool:
@@ -224,7 +219,7 @@ class PlannerClient:
             arrived.wait(0.1)
         response = future.result()
         if response.status == GoalStatus.STATUS_UNKNOWN:
-            raise PlannerUnavailableError(_UNKNOWN_GOAL)
+            raise PlannerUnavailableError(UNKNOWN_GOAL)
         return response.result
 
     def close(self) -> None:
@@ -246,8 +241,8 @@ class PlannerClient:
 
     def _loss(self) -> str:
         """How the planner that has the goal was lost, or an empty string."""
-        if not self._followed_by:  # accepted before its first sign of life was heard
-            self._followed_by = self._planner.living()
+        if self._ask_again and self._planner.living():
+            self._adopt(self._ask_again)
         if self._followed_by and self._planner.are_gone(self._followed_by):
             if self._planner.living() - self._followed_by:
                 return "planner_node went away, and another one was started,"
@@ -258,11 +253,25 @@ class PlannerClient:
         gone = self._gone_since and time.monotonic() > self._gone_since + GONE_SECONDS
         return "planner_node went away" if gone else ""
 
+    def _adopt(self, ask: Callable[[], Future]) -> None:
+        """Takes who lives for the planner that accepted before any sign of life was heard.
+
+        It may be another one, started since, which says so when it is asked for the result.
+        """
+        if not self._planner.are_found(self._node.count_services(self._send_goal)):
+            return
+        self._ask_again, self._followed_by = None, self._planner.living()
+        result = self._started()
+
+        def take(answer: Future) -> None:
+            if not result.done():
+                result.set_result(answer.result())
+
+        self._thread.call(ask).add_done_callback(take)
+
     def _cancel(self, timeout: float) -> int:
         """The return code of the request to cancel the own goal."""
-        answer = self._call(self._cancel_client, self._cancel_request(), timeout)
-        code: int = answer.return_code
-        return code
+        return int(self._call(self._cancel_client, self._cancel_request(), timeout).return_code)
 
     def _cancel_request(self) -> CancelGoal.Request:
         return CancelGoal.Request(goal_info=GoalInfo(goal_id=self._goal_id))
@@ -284,17 +293,8 @@ class PlannerClient:
         timeout: float,
         service: str,
     ) -> Any:
-        def servers() -> int:
-            return self._node.count_services(service)
-
         try:
+            servers = partial(self._node.count_services, service)
             return ask(send, is_ready, wait_for, timeout, self._planner, servers)
         except TimeoutError:
-            raise _unavailable(timeout) from None
-
-
-def _unavailable(timeout: float) -> PlannerUnavailableError:
-    return PlannerUnavailableError(
-        f"planner_node does not answer (waited {timeout:g} s); start it with: "
-        "ros2 run planner_node planner_node"
-    )
+            raise no_answer(timeout) from None

@@ -19,11 +19,12 @@ from tamp_interfaces.srv import PlanToGoal
 from tamp_runtime.node_process import prepare_process
 
 from .arm_text import describe_failure
-from .client import PlannerClient, PlannerUnavailableError
+from .client import PlannerClient
 from .goal_image import ImageFileError, read_goal_image
 from .interrupts import exit_code, listen_to_signals, mute, say, terminal_may_close
 from .plan_text import describe_plan
 from .progress import ProgressPrinter
+from .unavailable import PlannerUnavailableError
 
 SUCCEEDED: Final = (PlanToGoal.Response.SUCCESS, PlanToGoal.Response.ALREADY_TRUE)
 EXIT_FAILED: Final = 1

@@ -23,10 +23,11 @@ from tamp_runtime.node_thread import NodeThread
 from tamp_runtime.qos import LATCHED, STATUS
 
 from .arm_text import describe_arm
-from .client import PlannerClient, PlannerUnavailableError
+from .client import PlannerClient
 from .commands import prepare
 from .interrupts import exit_code, say
 from .rest import RestWatch
+from .unavailable import PlannerUnavailableError
 
 #: It cannot be said that the arm rests: nobody answers, or not in time.
 EXIT_UNKNOWN: Final = 1

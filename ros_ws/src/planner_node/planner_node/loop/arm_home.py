@@ -31,10 +31,12 @@ PASSING: Final = (
 )
 #: A motion node that lives says so once a second; its first word is waited for so long [s].
 FIRST_REPORT_SECONDS: Final = 2.0
+#: An arm that moves though no plan is under way has this long to come to rest [s].
+REST_SECONDS: Final = 30.0
 #: How often the arm is asked to go home before it counts as stuck.
 HOME_ATTEMPTS: Final = 3
 #: A plan that still goes on after so many motion_silence_timeouts does not obey.
-STOP_PATIENCE: Final = 4
+STOP_PATIENCE: Final = 8
 
 
 class ArmHome:
@@ -126,7 +128,7 @@ class ArmHome:
         if not motion.knows_arm:
             return
         unknown = (ArmPlace.UNKNOWN, settings.perceive_timeout, "waiting for news of the arm")
-        moving = (ArmPlace.MOVING, settings.motion_silence_timeout, "waiting for the arm to rest")
+        moving = (ArmPlace.MOVING, REST_SECONDS, "waiting for the arm to rest")
         for place, seconds, doing in (unknown, moving, unknown):
             if motion.newest.arm == place:
                 self._tell(f"{doing}: {describe_arm(motion.newest, motion.silence)}")

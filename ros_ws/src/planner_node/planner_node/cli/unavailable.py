@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a client says of a planner that does not answer, or not any more."""
+
+from __future__ import annotations
+
+from typing import Final
+
+#: What a person can do when nobody is there any more who follows the plan.
+WHAT_TO_DO: Final = (
+    "What became of its plan is not known, and the arm may go on with it: stop it with "
+    "'ros2 run planner_node stop', or look at the scene and ask again"
+)
+
+UNKNOWN_GOAL: Final = f"planner_node does not know the goal; it was started anew. {WHAT_TO_DO}"
+
+
+class PlannerUnavailableError(RuntimeError):
+    """planner_node does not answer; the message says what to do about it."""
+
+
+def no_answer(seconds: float) -> PlannerUnavailableError:
+    """The error of a request that was answered by nobody for so long [s]."""
+    return PlannerUnavailableError(
+        f"planner_node does not answer (waited {seconds:g} s); start it with: "
+        "ros2 run planner_node planner_node"
+    )
