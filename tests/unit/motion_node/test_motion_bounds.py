@@ -36,6 +36,21 @@ def test_a_place_out_of_reach_is_a_matter_of_the_pose(planner: MotionPlanner) ->
     assert "red_box" in str(error)
 
 
+def test_blocks_beside_their_places_are_named_where_there_is_no_solution(
+    planner: MotionPlanner,
+) -> None:
+    graph = scene((1, 1, 0), places=[(0.5, -0.15), (0.5, 0.0), (1.1, 0.15)])
+    with pytest.raises(InfeasibleError) as caught:
+        planner.solve(graph, [Move(0, 2)], HOME, OPEN)
+    assert "beside" not in str(caught.value)
+    moved = [
+        replace(item, position_world=tuple(np.add(item.position_world, (0.0, 0.04, 0.0))))
+        for item in graph.objects
+    ]
+    with pytest.raises(InfeasibleError, match="has no solution.* stands 40 mm beside stack0"):
+        planner.solve(replace(graph, objects=tuple(moved)), [Move(0, 2)], HOME, OPEN)
+
+
 def test_a_block_too_wide_for_the_fingers_is_a_matter_of_the_pose(
     planner: MotionPlanner,
 ) -> None:

@@ -17,6 +17,7 @@ from scene_graph import (
     SceneGraph,
     SceneGraphError,
     SceneObject,
+    base_name,
     rotation_from_quaternion,
     wrap_line,
 )
@@ -25,6 +26,8 @@ from .errors import InvalidPlanError
 
 #: A block whose vertical axis is farther than this from vertical is leaning [rad].
 MAX_LEAN = 0.3
+#: A stack that stands farther than this from the centre of its place is worth mentioning [m].
+ASIDE = 0.02
 #: Shapes that look the same from above however they are turned.
 ROUND = (CYLINDER, SPHERE)
 
@@ -68,6 +71,18 @@ class Scene:
         """The stacks as obstacles."""
         floor = self.floor
         return tuple(_column(stack, place, floor) for stack, place in zip(self.stacks, self.places))
+
+    @property
+    def aside(self) -> str:
+        """Which stacks do not stand where their places are; empty if all do."""
+        found = []
+        for stack, place in zip(self.stacks, self.places):
+            if stack:
+                offset = np.subtract(stack[0].position_world[:2], place.position_world[:2])
+                if (distance := float(np.hypot(*offset))) > ASIDE:
+                    base = base_name(place.index)
+                    found.append(f"{stack[0].name} stands {1000 * distance:.0f} mm beside {base}")
+        return ", ".join(found)
 
     def without_top(self, stack: int) -> Scene:
         """The scene after the top of a stack was taken."""

@@ -66,6 +66,10 @@ class InfeasibleError(MotionError):
             f"{constraint} is violated by {violation:.3g}"
         )
 
+    def add(self, circumstance: str) -> None:
+        """Adds to the sentence what may be why."""
+        self.args = (f"{self}; {circumstance}, which may be why",)
+
 
 class CancelledError(MotionError):
     """The optimisation was stopped on request."""

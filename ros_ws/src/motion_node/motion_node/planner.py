@@ -150,7 +150,12 @@ class MotionPlanner:
         phases = expand(
             scene, moves, self.arm.gripper, settings.phases, settings.squeeze, object_names
         )
-        return self._solve(phases, scene.floor, arm, fingers, cancelled, begin)
+        try:
+            return self._solve(phases, scene.floor, arm, fingers, cancelled, begin)
+        except InfeasibleError as error:
+            if scene.aside:
+                error.add(f"in the plan's scene {scene.aside}")
+            raise
 
     def solve_way_home(self, motion: Motion, moves_done: int, arm: Array, fingers: Array) -> Motion:
         """The way home of an empty hand in the middle of a plan: open, rise, go home.
