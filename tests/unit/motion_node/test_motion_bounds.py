@@ -47,7 +47,7 @@ def test_blocks_beside_their_places_are_named_where_there_is_no_solution(
         replace(item, position_world=tuple(np.add(item.position_world, (0.0, 0.04, 0.0))))
         for item in graph.objects
     ]
-    with pytest.raises(InfeasibleError, match="has no solution.* stands 40 mm beside stack0"):
+    with pytest.raises(InfeasibleError, match=r"has no solution.* stands 40 mm beside stack0"):
         planner.solve(replace(graph, objects=tuple(moved)), [Move(0, 2)], HOME, OPEN)
 
 
