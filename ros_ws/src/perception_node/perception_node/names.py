@@ -66,7 +66,12 @@ def mean_colors(rgb: NDArray[np.uint8], masks: Sequence[NDArray[np.bool_]]) -> A
     Returns:
         sRGB in 0..1, shape (N, 3).
     """
-    medians = [np.sort(rgb[mask], axis=0)[np.count_nonzero(mask) // 2] for mask in masks]
+    medians = []
+    for mask in masks:
+        left, top, width, height = cv2.boundingRect(mask.astype(np.uint8))
+        box = np.s_[top : top + height, left : left + width]
+        pixels = rgb[box][mask[box]]
+        medians.append(np.partition(pixels, len(pixels) // 2, axis=0)[len(pixels) // 2])
     return np.array(medians).reshape(-1, 3) / 255.0
 
 

@@ -8,6 +8,7 @@ from typing import Final
 
 from .a_star import a_star
 from .both_ends import both_ends
+from .both_ends_first import both_ends_first
 from .bounded import bounded
 from .breadth_first import breadth_first
 from .limits import Limits
@@ -23,7 +24,7 @@ AUTO: Final = "auto"
 
 
 ALGORITHMS: Final[dict[str, SearchAlgorithm]] = {
-    AUTO: patterns_both_ends,
+    AUTO: both_ends_first,
     "breadth_first": breadth_first,
     "both_ends": both_ends,
     "a_star": a_star,

@@ -3,9 +3,14 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from .breadth_first import breadth_first
 from .limits import Limits
 from .state import Parents, Problem, State, path_to, successors
+
+#: Expansions that are counted at once.
+CHUNK: Final = 16
 
 
 def both_ends(problem: Problem, limits: Limits) -> list[State]:
@@ -26,15 +31,18 @@ def both_ends(problem: Problem, limits: Limits) -> list[State]:
         forward = len(near_layer) <= len(far_layer)
         ours, theirs, layer = (near, far, near_layer) if forward else (far, near, far_layer)
         found: list[State] = []
-        for state in layer:
-            limits.count_expansion()
-            for successor, _ in successors(state):
-                if successor in ours:
-                    continue
-                ours[successor] = state
-                found.append(successor)
-                if successor in theirs:
-                    return path_to(successor, near) + path_to(successor, far)[-2::-1]
+        offset = 0
+        while offset < len(layer):
+            allowed = limits.count_expansions(min(CHUNK, len(layer) - offset))
+            for state in layer[offset : offset + allowed]:
+                for successor, _ in successors(state):
+                    if successor in ours:
+                        continue
+                    ours[successor] = state
+                    found.append(successor)
+                    if successor in theirs:
+                        return path_to(successor, near) + path_to(successor, far)[-2::-1]
+            offset += allowed
         if forward:
             near_layer = found
         else:
