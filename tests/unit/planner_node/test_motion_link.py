@@ -13,6 +13,7 @@ from planner_node.loop import MotionLink, Plan, plan_for, scene_in
 from planner_node.search import make_plan
 from planner_node.settings import Settings
 
+SECOND = 1_000_000_000
 OPTIMISING, EXECUTING = MotionState.OPTIMISING, MotionState.EXECUTING
 SUCCEEDED, IDLE = MotionState.SUCCEEDED, MotionState.IDLE
 
@@ -285,17 +286,15 @@ def test_a_stop_names_the_plan() -> None:
 
 def test_a_report_that_comes_again_does_not_say_how_the_arm_is_now() -> None:
     link = Linked().link
-    second = 1_000_000_000
-    moving = MotionReport("a", EXECUTING, arm=ArmPlace.MOVING, held="red_box", stamp=2 * second)
+    moving = MotionReport("a", EXECUTING, arm=ArmPlace.MOVING, held="red_box", stamp=2 * SECOND)
     link.receive(moving)
-    link.receive(MotionReport("a", SUCCEEDED, arm=ArmPlace.HOME, stamp=5 * second))
+    link.receive(MotionReport("a", SUCCEEDED, arm=ArmPlace.HOME, stamp=5 * SECOND))
     link.receive(moving)
     assert (link.newest.arm, link.newest.held) == (ArmPlace.HOME, "")
 
 
 def test_a_clock_that_starts_anew_is_followed() -> None:
     link = Linked().link
-    second = 1_000_000_000
-    link.receive(MotionReport("a", SUCCEEDED, arm=ArmPlace.HOME, stamp=500 * second))
-    link.receive(MotionReport(arm=ArmPlace.MOVING, stamp=2 * second))
+    link.receive(MotionReport("a", SUCCEEDED, arm=ArmPlace.HOME, stamp=500 * SECOND))
+    link.receive(MotionReport(arm=ArmPlace.MOVING, stamp=2 * SECOND))
     assert link.newest.arm == ArmPlace.MOVING
