@@ -151,6 +151,7 @@ class SimulatedArm:
         fingers_stuck_at: where the fingers stay [m]; negative: they obey.
         trembling: by how much its joints differ from one state to the next [rad].
         slowness: seconds of this machine a second of the arm's.
+        lag: how long a trajectory is on its way [s].
         sent: the trajectories, and the joints when each arrived.
     """
 
@@ -158,7 +159,7 @@ class SimulatedArm:
 
     def __init__(self) -> None:
         self.silent = self.deaf = self.stuck = self.frozen_clock = False
-        self.block, self.slowness, self.trembling = HALF_BLOCK, 1.0, 0.0
+        self.block, self.slowness, self.trembling, self.lag = HALF_BLOCK, 1.0, 0.0, 0.0
         self.sent: list[tuple[Trajectory, JointValues]] = []
         self.joints = self._seen = JointValues(HOME_Q.copy(), np.full(2, OPEN))
         self.frozen, self.fingers_stuck_at, self.cut_at = False, -1.0, 0.0
@@ -213,7 +214,7 @@ class SimulatedArm:
             return
         if self.cut_at > 0.0:
             trajectory, self.cut_at = trajectory.cut(0.0, self.cut_at), 0.0
-        self._following, self._began = trajectory, self._stamp
+        self._following, self._began = trajectory, self._stamp + self.lag
 
     def _tick(self) -> None:
         self._time += self.PERIOD * self.slowness

@@ -12,6 +12,7 @@ from motion_node.execution.errors import ExecutionError
 from motion_node.execution.follow import Follower
 from motion_node.execution.settings import ExecutionSettings
 from motion_node.phases import HOME, PICK, PLACE
+from motion_node.robots.joints import JointValues
 
 
 @pytest.fixture
@@ -179,3 +180,15 @@ def test_the_hand_is_empty_until_a_block_is_held_and_once_it_is_let_go(
     ]
     assert seen == [*once, *once, (HOME, False, True)]
     np.testing.assert_allclose(arm.joints.fingers, OPEN)
+
+
+@pytest.mark.parametrize("block", [0.0, 0.02])
+def test_fingers_that_are_told_late_to_close_are_not_taken_for_held_apart(
+    arm: SimulatedArm, follower: Follower, block: float
+) -> None:
+    arm.joints = JointValues(arm.joints.arm, np.full(2, 0.02))
+    arm.block, arm.lag = block, 1.5
+    arm.pass_time(0.1)
+    state = follower.wait_for_rest(lambda: False)
+    assert state is not None
+    assert follower.feel(state) == (block > 0.0)

@@ -23,6 +23,8 @@ from .settings import ExecutionSettings
 
 #: A state older than this does not tell where the arm is now [s].
 _FRESH_SECONDS: Final = 1.0
+#: Fingers that were told to close and have not moved by then are held apart [s].
+FEEL_SECONDS: Final = 3.0
 #: What an arm does that has not been given a trajectory.
 _NOTHING: Final = Phase(HOME, 0, "", None, None, Tool(0.0, 0.0, 0.0), (), 0.0)
 
@@ -255,12 +257,13 @@ class Follower:
         goal = np.maximum(now.fingers - by, 0.0)
         self._stand(JointValues(np.tile(now.arm, (2, 1)), np.vstack([now.fingers, goal])))
         patience, begin = self._patience(), state.stamp
-        while min(state.resting, state.stamp - begin - 0.5) < 0.2:
+        enough = float(np.mean(now.fingers - goal)) / 2
+        # Fingers that have not moved yet may not have been told yet: only moving proves anything.
+        while state.stamp - begin < FEEL_SECONDS:
             state = patience.wait(state)
-            if state.stamp - begin > 3.0:
-                break
-        moved = float(np.mean(now.fingers - state.positions.fingers))
-        return moved < float(np.mean(now.fingers - goal)) / 2
+            if float(np.mean(now.fingers - state.positions.fingers)) >= enough:
+                return False
+        return True
 
     def _object(self, verdict: Verdict, monitor: Monitor, state: ArmState) -> None:
         if verdict is Verdict.NOT_OPENED and monitor.block is not None:
