@@ -88,10 +88,23 @@ def test_a_block_in_hand_is_put_down_before_the_arm_brakes(bench: Bench) -> None
     np.testing.assert_allclose(joints.arm, placed.arm, atol=0.01)
 
 
-def test_a_stop_while_the_fingers_close_leaves_the_block_standing(bench: Bench) -> None:
-    bench.arm.when(lambda: bench.arm.joints.fingers[0] < 0.9 * OPEN, bench.stop.set)
-    assert bench.carry_out().moves_done == 0
-    assert bench.planner.ways_home == [0]
+@pytest.mark.parametrize("share", [0.0, 0.2, 0.4, 0.6, 0.8, 0.9])
+@pytest.mark.parametrize(("grip", "moves_done"), [(2, 0), (4, 1), (6, 1), (8, 2)])
+def test_a_stop_while_the_fingers_move_leaves_the_block_standing_and_the_hand_open(
+    bench: Bench, grip: int, moves_done: int, share: float
+) -> None:
+    """Fingers that have closed around a block when the stop comes open again."""
+    moving = two_moves().intervals[grip - 1]
+    assert moving.gripping
+    at = moving.start + share * (moving.end - moving.start)
+    bench.arm.when(lambda: bench.follower.time >= at, bench.stop.set)
+    end = bench.carry_out()
+    assert end.message == f"stopped on request after {moves_done} of 2 moves; the arm is home"
+    assert (end.state, end.held, end.moves_done) == (MotionState.CANCELLED, "", moves_done)
+    assert bench.planner.ways_home == [moves_done]
+    assert bench.planner.rises == [] == bench.planner.put_downs
+    assert len(bench.arm.sent) == 3  # the plan, the brake, the way home
+    assert bench.arm.sent[-1][1].fingers.min() > 0.99 * OPEN
     assert bench.arm.at_home()
 
 

@@ -190,7 +190,7 @@ def test_an_empty_hand_that_is_stopped_anywhere_goes_home_and_touches_nothing(
     empty = [i for i in motion.trajectory.intervals if not i.phase.tool.held and not i.gripping]
     for interval in empty[:-1]:
         time = rng.uniform(interval.start, interval.end)
-        brake = motion.trajectory.brake(time, 0.4)
+        brake = motion.trajectory.brake(time, 0.0, 0.4)
         rest = brake.positions[-1]
         home = planner.solve_way_home(motion, interval.phase.move, rest.arm, rest.fingers)
         oracle = CollisionOracle(graph)

@@ -33,6 +33,7 @@ class PhysicalArm:
     Attributes:
         cut: shares of the next trajectories after which they end.
         deaf_fingers: the fingers stay open, whatever they are told.
+        stop: set as soon as a finger is nearer to the middle than ``stop_below`` [m].
     """
 
     closed, problem = False, ""
@@ -42,6 +43,7 @@ class PhysicalArm:
         self._box = ArmStateBox(self.now)
         self.cut: list[float] = []
         self.deaf_fingers = False
+        self.stop, self.stop_below = threading.Event(), 0.0
         self._put()
 
     def now(self) -> float:
@@ -59,6 +61,8 @@ class PhysicalArm:
 
     def _put(self) -> None:
         joints = np.split(self._world.joint_state()[0], [len(PANDA.arm_joints)])
+        if joints[1].min() < self.stop_below:
+            self.stop.set()
         self._box.put(self._world.time, JointValues(*joints))
 
     def send(self, trajectory: Trajectory) -> None:
@@ -78,7 +82,7 @@ def carry_out(arm: PhysicalArm, world: World, planner: MotionPlanner) -> MotionR
     )
     executive = Executive(lambda: planner, arm, follower, condition, ExecutionSettings)
     plan = Plan("a", true_scene_graph(world), (Move(0, 2),), ("green_box",))
-    executive.carry_out(plan, threading.Event(), lambda _report: None)
+    executive.carry_out(plan, arm.stop, lambda _report: None)
     return condition.told_in(executive.report)
 
 
@@ -105,4 +109,20 @@ def test_fault_4_fingers_that_never_close_leave_the_blocks_standing(planner: Mot
         end = carry_out(arm, world, planner)
         assert end.message.startswith("the fingers did not close on green_box: they stand 80 mm")
         assert (end.arm, end.held, end.moves_done) == (ArmPlace.HOME, "", 0)
+        assert true_scene_graph(world).stacks() == (("red_box", "green_box"), ("blue_box",), ())
+
+
+@pytest.mark.parametrize("below", [0.035, 0.026, 0.023])
+def test_a_stop_while_the_fingers_close_leaves_the_block_where_it_is(
+    planner: MotionPlanner, below: float
+) -> None:
+    """At 23 mm from the middle they touch the block, which is 45 mm wide."""
+    with World() as world:
+        world.reset((("red_box", "green_box"), ("blue_box",), ()), 0)
+        arm = PhysicalArm(world)
+        arm.stop_below = below
+        end = carry_out(arm, world, planner)
+        assert end.state is MotionState.CANCELLED
+        assert end.message == "stopped on request after 0 of 1 moves; the arm is home"
+        assert (end.arm, end.held) == (ArmPlace.HOME, "")
         assert true_scene_graph(world).stacks() == (("red_box", "green_box"), ("blue_box",), ())

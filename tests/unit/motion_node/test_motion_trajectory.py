@@ -58,7 +58,7 @@ def test_braking_stays_on_the_path_and_starts_with_the_speed_of_the_moment(
     trajectory: Trajectory, share: float
 ) -> None:
     start = share * trajectory.duration
-    brake = trajectory.brake(start, 0.4)
+    brake = trajectory.brake(start - 0.03, 0.03, 0.4)
     assert brake.duration == pytest.approx(0.4)
     position, velocity = trajectory.sample(start)
     np.testing.assert_allclose(brake.positions.arm[0], position.arm)
@@ -80,17 +80,31 @@ def test_braking_stays_on_the_path_and_starts_with_the_speed_of_the_moment(
 
 def test_braking_does_not_run_past_a_switch(trajectory: Trajectory) -> None:
     travel = trajectory.intervals[0]
-    brake = trajectory.brake(travel.end - 0.05, 0.6)
+    brake = trajectory.brake(travel.end - 0.05, 0.0, 0.6)
     arm, fingers = brake.positions[-1].furthest(trajectory.sample(travel.end)[0])
     assert max(arm, fingers) < 1e-9
 
 
-def test_braking_while_the_fingers_move_holds_arm_and_fingers(trajectory: Trajectory) -> None:
-    grip = trajectory.intervals[1]
+@pytest.mark.parametrize("index", [1, 3])
+@pytest.mark.parametrize("share", [0.0, 0.4, 0.8, 0.99])
+def test_braking_while_the_fingers_move_opens_them_as_they_closed_and_keeps_the_arm(
+    trajectory: Trajectory, index: int, share: float
+) -> None:
+    grip = trajectory.intervals[index]
     assert grip.gripping
-    brake = trajectory.brake(grip.start + 0.1, 0.4)
+    now = grip.start + share * (grip.end - grip.start)
+    brake = trajectory.brake(now, 0.03, 0.4)
     assert np.ptp(brake.positions.arm, axis=0).max() == 0.0
-    assert np.ptp(brake.positions.fingers, axis=0).max() == 0.0
+    ends = trajectory.sample(np.array([grip.start, grip.end]))[0].fingers
+    np.testing.assert_allclose(brake.positions.fingers[-1], ends.max())
+    begin = trajectory.sample(min(now + 0.03, grip.end))[0].fingers
+    np.testing.assert_allclose(brake.positions.fingers[0], begin)
+    opening = np.diff(brake.positions.fingers, axis=0) / np.diff(brake.times)[:, None]
+    assert opening.min() >= 0.0
+    _, allowed = trajectory.sample(np.linspace(grip.start, grip.end, 500))
+    assert opening.max() <= 1.01 * np.abs(allowed.fingers).max()
+    mean = (brake.velocities.fingers[1:] + brake.velocities.fingers[:-1]) / 2
+    np.testing.assert_allclose(opening, mean, atol=0.01)
 
 
 def test_the_last_interval_is_the_way_home(trajectory: Trajectory) -> None:

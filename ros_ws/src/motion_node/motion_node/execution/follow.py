@@ -223,18 +223,22 @@ class Follower:
     def brake(self) -> ArmState:
         """Comes to rest along the running trajectory; returns the arm's state then.
 
+        Fingers that were about to take a block, or to let go of it, open.
+
         Raises:
             ExecutionError: if the arm does not come to rest, or joint states stay out.
         """
         assert self._trajectory is not None
-        begin = min(self.time + self.LEAD, self._trajectory.duration)
-        self._trajectory = self._trajectory.brake(begin, self.settings.brake_seconds)
+        self._trajectory = self._trajectory.brake(self.time, self.LEAD, self.settings.brake_seconds)
         self.under_way, self.time = False, 0.0
+        self.grip = replace(self.grip, sent=float(np.mean(self._trajectory.positions.fingers[-1])))
         self._send(self._trajectory)
         patience = self._patience()
         first = state = patience.wait(self._arm.newest())
-        while min(state.resting, state.stamp - first.stamp) < 0.15:
-            if state.stamp - first.stamp > self.settings.brake_seconds + 5.0:
+        # Fingers that press on a block do not move when they are first sent back.
+        duration = self._trajectory.duration
+        while state.resting < 0.15 or state.stamp - first.stamp < max(0.15, duration):
+            if state.stamp - first.stamp > duration + 5.0:
                 raise ExecutionError(
                     MotionReason.TRACKING_LOST,
                     "the arm does not stop when asked to",

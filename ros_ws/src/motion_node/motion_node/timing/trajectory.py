@@ -100,22 +100,39 @@ class Trajectory:
         )
         return Trajectory(times - start, positions, velocities, intervals)
 
-    def brake(self, start: float, seconds: float, step: float = 0.02) -> Trajectory:
-        """Comes to rest along the same path, which is known to be free, from a time on [s].
+    def brake(self, now: float, lead: float, seconds: float, step: float = 0.02) -> Trajectory:
+        """Comes to rest along the same path, which is known to be free, shortly after a time.
 
         The path is followed ever more slowly, s(t) = start + t - t²/(2 seconds), but not beyond
-        the next switch; the fingers stay as they are at ``start``.
+        the next switch; the fingers stay as they are at its start. Where the fingers move while
+        the arm stands still they end open: closing is undone, opening is completed, at the
+        fingers' own speed.
+
+        Args:
+            now: how far the trajectory has come [s].
+            lead: how far ahead of that the new one starts, to be there in time [s].
+            seconds: how long the arm takes to come to rest [s].
         """
-        interval = self.interval_at(start)
+        interval = self.interval_at(now)
+        start = min(now + lead, interval.end)
+        if interval.gripping:
+            ends = np.array([interval.start, interval.end])
+            end = float(ends[np.argmax(self.sample(ends)[0].fingers.mean(axis=1))])
+            seconds = max(abs(end - start), step)
         count = max(2, int(np.ceil(seconds / step)) + 1)
         times = np.linspace(0.0, seconds, count)
-        along = start + times - times**2 / (2 * seconds)
-        rate = np.where(along <= interval.end, 1 - times / seconds, 0.0)[:, None]
+        if interval.gripping:
+            along, rate = np.linspace(start, end, count), np.full(count, (end - start) / seconds)
+        else:
+            along = start + times - times**2 / (2 * seconds)
+            rate = np.where(along <= interval.end, 1 - times / seconds, 0.0)
         positions, velocities = self.sample(np.minimum(along, interval.end))
-        fingers = np.tile(positions.fingers[0], (count, 1))
+        fingers, speeds = positions.fingers, velocities.fingers * rate[:, None]
+        if not interval.gripping:
+            fingers, speeds = np.tile(fingers[0], (count, 1)), np.zeros_like(fingers)
         return Trajectory(
             times,
             JointValues(positions.arm, fingers),
-            JointValues(velocities.arm * rate, np.zeros_like(fingers)),
+            JointValues(velocities.arm * rate[:, None], speeds),
             (Interval(0.0, seconds, interval.phase, interval.gripping),),
         )
