@@ -12,6 +12,7 @@ import pybullet
 import pytest
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation, maximum_filter, minimum_filter
+from sim_peer import tiny_picture
 
 from sim_node import world as world_module
 from sim_node.camera import Frame
@@ -58,11 +59,11 @@ def picture(world: World, positions: NDArray[np.float64]) -> tuple[Frame, NDArra
     """What the camera sees with the arm put there, and which pixels are the arm's."""
     for index, position in zip(world.joint_indices, positions):
         pybullet.resetJointState(world.robot, index, position, 0.0, physicsClientId=world.client)
-    frame = world.render()
+    frame = tiny_picture(world)
     pybullet.resetBasePositionAndOrientation(
         world.robot, (0.0, 0.0, 100.0), (0.0, 0.0, 0.0, 1.0), physicsClientId=world.client
     )
-    without = world.render()
+    without = tiny_picture(world)
     pybullet.resetBasePositionAndOrientation(
         world.robot, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), physicsClientId=world.client
     )

@@ -2,8 +2,6 @@
 """The world obeys physics: towers stand, pushed towers fall, nothing is glued."""
 
 from collections.abc import Iterator
-from functools import partial
-from typing import Any
 
 import numpy as np
 import pybullet
@@ -106,36 +104,6 @@ def test_depth_and_labels_agree_with_the_geometry(world: World) -> None:
     assert frame.labels[round(row), round(column)] == world.label("green_box")
     # The front face is half a block nearer than the centre, seen slightly from above.
     assert frame.depth[round(row), round(column)] == pytest.approx(z - 0.0225, abs=0.004)
-
-
-def test_the_table_drawn_once_and_the_rest_make_the_picture_of_all_at_once(
-    world: World, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    world.reset(random_layout(2, 7), 2)
-    frame = world.render()
-    drawn: list[tuple[Any, ...]] = []
-    draw = pybullet.getCameraImage
-
-    def recorded(*args: Any, **named: Any) -> tuple[Any, ...]:
-        drawn.append(draw(*args, **named))
-        return drawn[-1]
-
-    monkeypatch.setattr(pybullet, "getCameraImage", recorded)
-    table = pybullet.getBodyUniqueId(0, physicsClientId=world.client)
-    color = partial(pybullet.changeVisualShape, table, -1, physicsClientId=world.client)
-    color(rgbaColor=(0.78, 0.74, 0.68, 1.0))
-    world.render()
-    color(rgbaColor=(0.0, 0.0, 0.0, 0.0))
-    _, _, rgba, buffer, bodies = drawn[0]
-    camera = world.config.camera
-    depth = camera.far * camera.near / (camera.far - (camera.far - camera.near) * buffer)
-    labels = np.zeros(bodies.shape)
-    for name in world.names:
-        labels[bodies == world.body(name)] = world.label(name)
-    assert (bodies == table).sum() > 20_000
-    np.testing.assert_array_equal(frame.rgb, rgba[..., :3])
-    np.testing.assert_allclose(frame.depth, np.where(buffer < 1.0, depth, 0.0), rtol=1e-5)
-    np.testing.assert_array_equal(frame.labels, labels)
 
 
 def test_the_arm_at_home_hides_no_block(world: World) -> None:

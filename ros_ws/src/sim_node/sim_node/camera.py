@@ -3,14 +3,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import pybullet
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
+from .rendering.rasteriser import Array, Canvas, Triangles, draw
+from .rendering.surfaces import Surface, surfaces_of
 from .scene import CameraConfig
+
+#: Where the light comes from, in world, and how much of it falls on what faces away, and on what
+#: faces it.
+_LIGHT: Final = np.array([1.2, -0.6, 1.8]) / np.linalg.norm([1.2, -0.6, 1.8])
+_AMBIENT: Final = 0.55
+_DIFFUSE: Final = 0.45
+_SPECULAR: Final = 0.05
 
 
 @dataclass(frozen=True)
@@ -28,82 +39,93 @@ class Frame:
     labels: NDArray[np.uint16]
 
 
-@dataclass(frozen=True)
-class _Pixels:
-    """What pybullet gives: colours (h, w, 4), its depth buffer (h, w) and body ids (h, w)."""
-
-    rgba: NDArray[np.uint8]
-    buffer: NDArray[np.float32]
-    bodies: NDArray[np.int32]
-
-
 class CameraRenderer:
-    """pybullet's CPU renderer behind a pinhole camera.
+    """A pinhole camera that looks at the bodies of a physics server.
 
-    What never moves is drawn once: it fills most of the picture, and costs more than all the rest.
+    What never moves is drawn once. The looks of the others are read once, see :meth:`forget`.
 
     Args:
         client: physics server; in its world there is nothing yet but what never moves.
         config: the camera.
-        still_bodies: the ids of those bodies; they are not drawn again.
     """
 
-    def __init__(self, client: int, config: CameraConfig, still_bodies: Iterable[int]) -> None:
+    def __init__(self, client: int, config: CameraConfig) -> None:
         self._client = client
         self._config = config
-        self._view = pybullet.computeViewMatrix(
-            config.position_world, config.target_world, (0.0, 0.0, 1.0)
-        )
-        self._projection = pybullet.computeProjectionMatrixFOV(
-            np.degrees(config.vertical_fov), config.width / config.height, config.near, config.far
-        )
-        self._backdrop = self._draw()
-        self._backdrop_depth = self._depth(self._backdrop.buffer)
-        for body in still_bodies:
-            # The renderer leaves out what is fully transparent.
-            pybullet.changeVisualShape(body, -1, rgbaColor=(0, 0, 0, 0), physicsClientId=client)
+        self._intrinsics = config.intrinsics
+        self._optical_from_world = np.linalg.inv(config.world_from_optical)
+        self._looks: dict[int, tuple[Surface, ...]] = {}
+        self._backdrop = Canvas.empty(config.width, config.height)
+        self._still = frozenset(self._bodies())
+        self._draw(self._backdrop, self._still, {})
+
+    def forget(self, body: int) -> None:
+        """A body is gone; another one may get its number."""
+        self._looks.pop(body, None)
 
     def render(self, labels_by_body: Mapping[int, int]) -> Frame:
         """Renders the world as it is now; ``labels_by_body`` gives a block's label by body id."""
-        drawn, backdrop = self._draw(), self._backdrop
-        nearer = drawn.buffer < backdrop.buffer
-        rgb, depth = backdrop.rgba[..., :3].copy(), self._backdrop_depth.copy()
-        rgb[nearer], depth[nearer] = drawn.rgba[nearer, :3], self._depth(drawn.buffer[nearer])
-        labels = np.zeros(nearer.shape, dtype=np.uint16)
-        bodies = drawn.bodies[nearer]
-        label_of = np.zeros(max([*labels_by_body, bodies.max(initial=0)]) + 1, np.uint16)
-        for body, label in labels_by_body.items():
-            label_of[body] = label
-        labels[nearer] = label_of[bodies]
-        return Frame(rgb, depth, labels)
-
-    def _depth(self, buffer: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Distances along the optical axis [m] for values of the depth buffer; 0 for nothing."""
-        near, far = self._config.near, self._config.far
-        values = buffer.astype(np.float64)
-        return np.where(values < 1.0, far * near / (far - (far - near) * values), 0.0).astype(
-            np.float32
+        canvas = self._backdrop.copy()
+        self._draw(
+            canvas, [body for body in self._bodies() if body not in self._still], labels_by_body
+        )
+        shape = (self._config.height, self._config.width)
+        inverse = canvas.inverse_depth
+        depth = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
+        depth[depth > self._config.far] = 0.0
+        return Frame(
+            canvas.rgb.reshape(*shape, 3),
+            depth.reshape(shape).astype(np.float32),
+            canvas.labels.reshape(shape),
         )
 
-    def _draw(self) -> _Pixels:
-        config = self._config
-        _, _, rgba, buffer, bodies = pybullet.getCameraImage(
-            config.width,
-            config.height,
-            self._view,
-            self._projection,
-            lightDirection=(1.2, -0.6, 1.8),
-            lightColor=(1.0, 1.0, 1.0),
-            lightAmbientCoeff=0.55,
-            lightDiffuseCoeff=0.45,
-            lightSpecularCoeff=0.05,
-            shadow=0,
-            renderer=pybullet.ER_TINY_RENDERER,
-            physicsClientId=self._client,
+    def _bodies(self) -> list[int]:
+        count = pybullet.getNumBodies(physicsClientId=self._client)
+        return [pybullet.getBodyUniqueId(i, physicsClientId=self._client) for i in range(count)]
+
+    def _draw(self, canvas: Canvas, bodies: Collection[int], labels: Mapping[int, int]) -> None:
+        turn, offset = self._optical_from_world[:3, :3], self._optical_from_world[:3, 3]
+        parts: list[tuple[Array, ...]] = []
+        vertices = 0
+        for body in bodies:
+            if body not in self._looks:
+                self._looks[body] = surfaces_of(self._client, body)
+            surfaces = self._looks[body]
+            poses = self._poses(body, [surface.link for surface in surfaces])
+            for surface, (rotation, position) in zip(surfaces, poses):
+                points = surface.points @ (turn @ rotation).T + (turn @ position + offset)
+                marks = np.full(len(surface.faces), labels.get(body, 0), np.uint16)
+                shade = _shade(surface.normals, rotation)
+                parts.append((points, surface.faces + vertices, shade, surface.colors, marks))
+                vertices += len(points)
+        if parts:
+            triangles = Triangles(*(np.concatenate(part) for part in zip(*parts)))
+            draw(canvas, triangles, self._intrinsics, self._config.near)
+
+    def _poses(self, body: int, links: list[int]) -> list[tuple[Array, Array]]:
+        """Rotations and positions of links in world [m]."""
+        client = self._client
+        base = pybullet.getBasePositionAndOrientation(body, physicsClientId=client)
+        moving = sorted({link for link in links if link >= 0})
+        poses = {-1: base}
+        if moving:
+            states = pybullet.getLinkStates(
+                body, moving, computeForwardKinematics=1, physicsClientId=client
+            )
+            poses |= {link: (state[4], state[5]) for link, state in zip(moving, states)}
+        rotations = (
+            Rotation.from_quat([poses[link][1] for link in links]).as_matrix() if links else []
         )
-        shape = (config.height, config.width)
-        return _Pixels(
-            np.asarray(rgba, dtype=np.uint8).reshape(*shape, 4),
-            np.asarray(buffer, dtype=np.float32).reshape(shape),
-            np.asarray(bodies, dtype=np.int32).reshape(shape),
-        )
+        return [(rotation, np.array(poses[link][0])) for rotation, link in zip(rotations, links)]
+
+
+def _shade(normals: Array, rotation: Array) -> Array:
+    """How bright a surface is at its corners, shape (f, 3).
+
+    Args:
+        normals: in the frame of its link, shape (f, 3, 3).
+        rotation: of that frame in world, shape (3, 3).
+    """
+    facing, upward = normals @ (_LIGHT @ rotation), normals @ rotation[2]
+    mirrored = np.maximum(2.0 * upward * facing - _LIGHT[2], 0.0)
+    return _AMBIENT + _DIFFUSE * np.maximum(facing, 0.0) + _SPECULAR * mirrored**2

@@ -55,8 +55,8 @@ class World:
             fixedTimeStep=timestep, numSolverIterations=100, physicsClientId=self.client
         )
         pybullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
-        table = create_table(self.client)
-        self._camera = CameraRenderer(self.client, self.config.camera, still_bodies=[table])
+        create_table(self.client)
+        self._camera = CameraRenderer(self.client, self.config.camera)
         self.robot = pybullet.loadURDF(
             str(light_urdf(arm.urdf)),
             useFixedBase=True,
@@ -112,6 +112,7 @@ class World:
         check_layout(layout, self.config.stack_count)
         for body in self._bodies.values():
             pybullet.removeBody(body, physicsClientId=self.client)
+            self._camera.forget(body)
         self._bodies.clear()
         self._send_home()
         rng = np.random.default_rng(seed)

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``make bench-sim``: how quick the simulator is, and whether its pictures are the physics'.
+
+Pictures beside those of pybullet's own software renderer, in turns; every pixel of random scenes
+(seeds from 1000) beside the physics' ray casts; the whole graph as fast as it goes. Writes
+``benchmarks/results/sim.json``; ``QUICK=1`` looks at 10 scenes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import pybullet
+from results_file import Row, print_rows, quick, write_result
+from sim_peer import edges, exact_ray_cast, tiny_picture
+from tqdm import tqdm
+
+from sim_node.layouts import random_layout
+from sim_node.scene import CameraConfig, SceneConfig
+from sim_node.world import World
+from tamp_bringup.processes import NodeProcesses, use_own_domain
+
+FIRST_SEED: Final = 1000
+#: Width, height, required milliseconds.
+SIZES: Final = ((256, 256, 5.0), (640, 480, 15.0))
+#: Arm configurations in which it is before the camera, over the stacks [rad, m].
+OVER_THE_STACKS: Final = (
+    (0.0, 0.35, 0.0, -2.2, 0.0, 2.55, 0.785, 0.02, 0.02),
+    (-0.3, 0.5, 0.1, -1.9, 0.2, 2.4, 0.3, 0.04, 0.04),
+)
+
+
+def put_arm(world: World, positions: tuple[float, ...]) -> None:
+    """Puts the arm into a configuration, without physics."""
+    for index, position in zip(world.joint_indices, positions):
+        pybullet.resetJointState(world.robot, index, position, 0.0, physicsClientId=world.client)
+
+
+def put_arm_away(world: World) -> None:
+    """Where no ray meets it: the physics knows its hulls, the camera its looks."""
+    pybullet.resetBasePositionAndOrientation(
+        world.robot, (0.0, 0.0, 100.0), (0.0, 0.0, 0.0, 1.0), physicsClientId=world.client
+    )
+
+
+def milliseconds(picture: Callable[[], object]) -> float:
+    """Wall time of one picture."""
+    begin = time.perf_counter()
+    picture()
+    return 1000.0 * (time.perf_counter() - begin)
+
+
+def picture_rows(scenes: int) -> list[Row]:
+    """Times of pictures with the arm in view, ours and pybullet's in turns."""
+    rows = []
+    for width, height, required in SIZES:
+        ours, theirs = [], []
+        camera = replace(CameraConfig(), width=width, height=height)
+        with World(SceneConfig(camera=camera)) as world:
+            for seed in tqdm(range(FIRST_SEED, FIRST_SEED + scenes), f"{width}x{height}"):
+                world.reset(random_layout(seed, 3 + seed % 5), seed)
+                put_arm(world, OVER_THE_STACKS[seed % len(OVER_THE_STACKS)])
+                ours.append(milliseconds(world.render))
+                theirs.append(milliseconds(lambda: tiny_picture(world)))
+        name = f"{width}x{height}, colour, depth and labels, arm in view"
+        for who, times, bound in (
+            ("ours", ours, required),
+            ("pybullet's TinyRenderer", theirs, None),
+        ):
+            rows.append(
+                Row(name, f"a picture, median, {who}", statistics.median(times), "ms", len(times),
+                    (min(times), max(times)), None if bound is None else f"<= {bound}")
+            )  # fmt: skip
+    return rows
+
+
+def truth_rows(scenes: int) -> list[Row]:
+    """Every pixel beside the ray that the physics casts through it."""
+    equal, pixels, worst, far = 0, 0, 0.0, 0
+    with World() as world:
+        for seed in tqdm(range(FIRST_SEED, FIRST_SEED + scenes), "rays"):
+            world.reset(random_layout(seed, 3 + seed % 5), seed)
+            put_arm_away(world)
+            frame = world.render()
+            labels, depth = exact_ray_cast(world)
+            same = frame.labels == labels
+            equal, pixels = equal + int(same.sum()), pixels + same.size
+            inner = same & (depth > 0.0) & ~edges(depth)
+            error = np.abs(frame.depth - depth)[inner]
+            worst, far = max(worst, float(error.max())), far + int((error > 2e-4).sum())
+    name = "every pixel beside the physics' ray casts"
+    return [
+        Row(name, "labels equal", equal / pixels, "", pixels, required=">= 0.999",
+            note=f"{scenes} scenes"),
+        Row(name, "depth, greatest difference away from edges", 1000.0 * worst, "mm", pixels,
+            required="<= 0.2", note="edges: inverse depth bends or jumps"),
+    ]  # fmt: skip
+
+
+def physics_rows(seconds: float) -> list[Row]:
+    """Simulated seconds a second of the physics alone, and with a picture every 0.1 s."""
+    rows = []
+    with World() as world:
+        world.reset(random_layout(FIRST_SEED, 6), FIRST_SEED)
+        for name, pictured in (("physics alone", False), ("physics and 10 Hz camera", True)):
+            begin, start = time.perf_counter(), world.time
+            while time.perf_counter() < begin + seconds:
+                for _ in range(24):
+                    world.step()
+                if pictured:
+                    world.render()
+            factor = (world.time - start) / (time.perf_counter() - begin)
+            rows.append(Row(name, "real-time factor", factor, "", 1))
+    return rows
+
+
+def graph_rows(seconds: float) -> list[Row]:
+    """The real-time factor of the whole graph, as fast as it goes, with an idle arm."""
+    import rclpy
+    from rclpy.executors import SingleThreadedExecutor
+    from rosgraph_msgs.msg import Clock
+    from tamp_runtime.messages.stamps import nanoseconds
+    from tamp_runtime.qos import SENSOR_DATA
+
+    use_own_domain()
+    rclpy.init()
+    node = rclpy.create_node("bench_sim")
+    times: list[int] = []
+    node.create_subscription(
+        Clock, "clock", lambda message: times.append(nanoseconds(message.clock)), SENSOR_DATA
+    )
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    parameters = {"sim_node": {"real_time_factor": 0.0, "blocks": 6, "seed": FIRST_SEED}}
+    try:
+        with NodeProcesses(Path("runs") / "bench_sim", parameters):
+            settled = time.monotonic() + 15.0
+            while not times or time.monotonic() < settled:
+                executor.spin_once(timeout_sec=0.1)
+            begin, start = time.monotonic(), times[-1]
+            while time.monotonic() < begin + seconds:
+                executor.spin_once(timeout_sec=0.1)
+            factor = (times[-1] - start) / 1e9 / (time.monotonic() - begin)
+    finally:
+        node.destroy_node()
+        rclpy.shutdown()
+    return [Row("whole graph, 10 Hz camera, as fast as it goes", "real-time factor", factor, "", 1,
+                required=">= 8")]  # fmt: skip
+
+
+def main() -> None:
+    argparse.ArgumentParser(description=__doc__).parse_args()
+    scenes = 10 if quick() else 200
+    begin = time.monotonic()
+    rows = [
+        *picture_rows(scenes),
+        *truth_rows(scenes),
+        *physics_rows(3.0 if quick() else 10.0),
+        *graph_rows(10.0 if quick() else 30.0),
+    ]
+    print_rows(rows)
+    path = write_result("sim", "make bench-sim", rows, time.monotonic() - begin)
+    print(f"written to {path}")
+
+
+if __name__ == "__main__":
+    main()
