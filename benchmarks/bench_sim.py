@@ -133,9 +133,11 @@ def graph_rows(seconds: float) -> list[Row]:
     rclpy.init()
     node = rclpy.create_node("bench_sim")
     times: list[int] = []
-    node.create_subscription(
-        Clock, "clock", lambda message: times.append(nanoseconds(message.clock)), SENSOR_DATA
-    )
+
+    def hear(message: Clock) -> None:
+        times.append(nanoseconds(message.clock))
+
+    node.create_subscription(Clock, "clock", hear, SENSOR_DATA)
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     parameters = {"sim_node": {"real_time_factor": 0.0, "blocks": 6, "seed": FIRST_SEED}}

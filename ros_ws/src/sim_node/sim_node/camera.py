@@ -5,12 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import pybullet
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from .rendering.rasteriser import Array, Canvas, Triangles, draw
 from .rendering.surfaces import Surface, surfaces_of
@@ -85,7 +84,8 @@ class CameraRenderer:
 
     def _draw(self, canvas: Canvas, bodies: Collection[int], labels: Mapping[int, int]) -> None:
         turn, offset = self._optical_from_world[:3, :3], self._optical_from_world[:3, 3]
-        parts: list[tuple[Array, ...]] = []
+        eye = np.array(self._config.position_world)
+        parts: list[tuple[NDArray[Any], ...]] = []
         vertices = 0
         for body in bodies:
             if body not in self._looks:
@@ -94,9 +94,11 @@ class CameraRenderer:
             poses = self._poses(body, [surface.link for surface in surfaces])
             for surface, (rotation, position) in zip(surfaces, poses):
                 points = surface.points @ (turn @ rotation).T + (turn @ position + offset)
-                marks = np.full(len(surface.faces), labels.get(body, 0), np.uint16)
-                shade = _shade(surface.normals, rotation)
-                parts.append((points, surface.faces + vertices, shade, surface.colors, marks))
+                seen = np.flatnonzero(surface.faces_to((eye - position) @ rotation))
+                marks = np.full(len(seen), labels.get(body, 0), np.uint16)
+                shade = _shade(surface.normals[seen], rotation)
+                faces = surface.faces[seen] + vertices
+                parts.append((points, faces, shade, surface.colors[seen], marks))
                 vertices += len(points)
         if parts:
             triangles = Triangles(*(np.concatenate(part) for part in zip(*parts)))
@@ -113,10 +115,11 @@ class CameraRenderer:
                 body, moving, computeForwardKinematics=1, physicsClientId=client
             )
             poses |= {link: (state[4], state[5]) for link, state in zip(moving, states)}
-        rotations = (
-            Rotation.from_quat([poses[link][1] for link in links]).as_matrix() if links else []
-        )
-        return [(rotation, np.array(poses[link][0])) for rotation, link in zip(rotations, links)]
+        return [(_rotation(poses[link][1]), np.array(poses[link][0])) for link in links]
+
+
+def _rotation(quaternion: tuple[float, ...]) -> Array:
+    return np.array(pybullet.getMatrixFromQuaternion(quaternion)).reshape(3, 3)
 
 
 def _shade(normals: Array, rotation: Array) -> Array:
@@ -126,6 +129,7 @@ def _shade(normals: Array, rotation: Array) -> Array:
         normals: in the frame of its link, shape (f, 3, 3).
         rotation: of that frame in world, shape (3, 3).
     """
-    facing, upward = normals @ (_LIGHT @ rotation), normals @ rotation[2]
+    directions = np.stack([_LIGHT @ rotation, rotation[2]], axis=1)
+    facing, upward = (normals.reshape(-1, 3) @ directions).T.reshape(2, -1, 3)
     mirrored = np.maximum(2.0 * upward * facing - _LIGHT[2], 0.0)
     return _AMBIENT + _DIFFUSE * np.maximum(facing, 0.0) + _SPECULAR * mirrored**2

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Final
 
@@ -41,6 +41,18 @@ class Surface:
     faces: NDArray[np.int64]
     normals: Array
     colors: Array
+
+    @cached_property
+    def _planes(self) -> tuple[Array, Array]:
+        """Outward normals, shape (f, 3), of any length, and each plane's offset along its own."""
+        a, b, c = (self.points[self.faces[:, corner]] for corner in range(3))
+        outward = np.cross(c - a, b - a)
+        return outward, np.einsum("fi,fi->f", outward, a)
+
+    def faces_to(self, eye: Array) -> NDArray[np.bool_]:
+        """Which faces show their outside to an eye in the link's frame, shape (3,) -> (f,)."""
+        outward, offsets = self._planes
+        return np.asarray(outward @ eye > offsets)
 
 
 def surfaces_of(client: int, body: int) -> tuple[Surface, ...]:
