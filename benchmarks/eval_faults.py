@@ -14,7 +14,6 @@ from __future__ import annotations
 import argparse
 import json
 import signal
-import subprocess
 import sys
 import time
 import traceback
@@ -26,6 +25,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import rclpy
+import side_by_side
 from faults.catalogue import CATALOGUE, UnknownFaultError, faults_named
 from faults.fault import Fault, Phase
 from faults.numbered import numbered_table, tests_that_name
@@ -112,26 +112,6 @@ def run_tasks(tasks: Sequence[Task], real_time_factor: float, share: int = 0) ->
                     waiting = _until_poisoned(setting, waiting, progress)
 
 
-def run_side_by_side(jobs: int) -> bool:
-    """Runs this program once for each share of the trials; whether all of them came to their end.
-
-    Each has its own graph in a DDS domain of its own. Ctrl-C reaches all, and all are waited for.
-    """
-    command = [sys.executable, *sys.argv, "--resume"]
-    shares = [
-        subprocess.Popen([*command, "--share", str(share), "--jobs", str(jobs)])
-        for share in range(jobs)
-    ]
-    interrupted = False
-    for share in shares:
-        while share.poll() is None:
-            try:
-                share.wait()
-            except KeyboardInterrupt:
-                interrupted = True
-    return not interrupted and not any(share.returncode for share in shares)
-
-
 def run_share(tasks: Sequence[Task], real_time_factor: float, share: int = 0) -> bool:
     """:func:`run_tasks` with a ROS context of its own; whether it came to its end."""
     use_own_domain()
@@ -185,8 +165,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, help="one trial a kind with this seed")
     parser.add_argument("--trials", type=int, default=5, help="of each kind")
     parser.add_argument("--real-time-factor", type=float, default=4.0)
-    parser.add_argument("--jobs", type=int, default=1, help="graphs side by side")
-    parser.add_argument("--share", type=int, help=argparse.SUPPRESS)
+    side_by_side.add_arguments(parser)
     parser.add_argument("--resume", action="store_true", help="keep the trials done so far")
     parser.add_argument("--report", action="store_true", help="only write what has been measured")
     options = parser.parse_args()
@@ -209,11 +188,11 @@ def main() -> int:
     # Where a script put this into the background, SIGINT is ignored.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     if options.share is not None:
-        tasks = tasks[options.share :: options.jobs]
-        return 0 if run_share(tasks, options.real_time_factor, options.share) else 130
+        mine = side_by_side.share_of(tasks, options)
+        return 0 if run_share(mine, options.real_time_factor, options.share) else 130
     if not options.report:
         whole = (
-            run_side_by_side(options.jobs)
+            side_by_side.run_shares(options.jobs)
             if options.jobs > 1
             else run_share(tasks, options.real_time_factor)
         )

@@ -3,6 +3,7 @@
 
 The four nodes run as processes; success is judged by the simulator's ground truth. Stops cleanly
 on Ctrl-C; what was measured is kept in runs/ and the same command goes on from there (RESUME=1).
+JOBS=2 runs two graphs side by side; times are then those of a busy machine.
 BASELINE=FOLDER times another checkout's code on the same tasks in turns.
 """
 
@@ -13,10 +14,12 @@ import json
 import sys
 import time
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
 
 import rclpy
+import side_by_side
 from baseline_tasks import Baseline, BaselineError, ratio_rows
 from rclpy.signals import SignalHandlerOptions
 from results_file import Row, print_rows, quick, wilson_interval, write_result
@@ -45,18 +48,19 @@ def run_in_turns(options: argparse.Namespace, folder: Path, baseline: Baseline) 
     return results
 
 
-def run_tasks(options: argparse.Namespace, folder: Path, tasks: range) -> list[dict]:
+def run_tasks(options: argparse.Namespace, folder: Path, tasks: Sequence[int]) -> list[dict]:
     """Runs those of the tasks that are not yet in ``folder`` and returns the results of all."""
     parameters = {"sim_node": {"real_time_factor": float(options.real_time_factor)}}
+    share = options.share or 0
     results: list[dict] = []
     with (
-        NodeProcesses(folder / "logs", parameters) as processes,
+        NodeProcesses(folder / f"logs_{share}", parameters) as processes,
         SceneObserver() as observer,
         PlannerClient() as planner,
     ):
         observer.reset(0, options.blocks, timeout=60.0)
         observer.confident_graph(timeout=60.0)  # the nodes have started and found one another
-        progress = tqdm([FIRST_SEED + task for task in tasks], unit="task")
+        progress = tqdm([FIRST_SEED + task for task in tasks], unit="task", position=share)
         for seed in progress:
             path = folder / f"{seed}.json"
             if not path.exists():
@@ -157,7 +161,10 @@ def main() -> int:
     parser.add_argument("--resume", action="store_true", help="keep the tasks done so far")
     parser.add_argument("--baseline", type=Path, help="another checkout, set up, to time in turns")
     parser.add_argument("--baseline-n", type=int, default=10, help="tasks that it runs")
+    side_by_side.add_arguments(parser)
     options = parser.parse_args()
+    if options.baseline and options.jobs > 1:
+        parser.error("two codes are timed in turns, not side by side: leave out --jobs")
     if quick():
         options.n = min(options.n, 2)
     folder = Path("runs") / f"eval_tasks_{options.blocks}"
@@ -176,8 +183,13 @@ def main() -> int:
             if not options.resume:
                 baseline.forget()
             results = run_in_turns(options, folder, baseline)
+        elif options.jobs > 1 and options.share is None:
+            if not side_by_side.run_shares(options.jobs):
+                raise KeyboardInterrupt
+            paths = [folder / f"{FIRST_SEED + task}.json" for task in range(options.n)]
+            results = [json.loads(path.read_text()) for path in paths]
         else:
-            results = run_tasks(options, folder, range(options.n))
+            results = run_tasks(options, folder, side_by_side.share_of(range(options.n), options))
     except KeyboardInterrupt:
         print("\nstopped; RESUME=1 goes on with the tasks that are left")
         return 130
@@ -186,6 +198,8 @@ def main() -> int:
         return 1
     finally:
         rclpy.try_shutdown()
+    if options.share is not None:
+        return 0
     rows = make_rows(results, options.blocks)
     if baseline:
         rows += ratio_rows(results, baseline.results(), baseline.commit)
@@ -202,6 +216,7 @@ def main() -> int:
     path = write_result(
         f"tasks_{options.blocks}",
         f"make eval-tasks N={options.n} BLOCKS={options.blocks} RTF={options.real_time_factor:g}"
+        + (f" JOBS={options.jobs}" if options.jobs > 1 else "")
         + (f" BASELINE=CHECKOUT_OF_{baseline.commit}" if baseline else ""),
         rows,
         time.monotonic() - started,
