@@ -65,3 +65,18 @@ def test_stop_holds_the_arm_where_it_is(world: World) -> None:
     reach(world, arm, 1.0)
     assert not arm.moving
     assert abs(world.joint_state()[0][0] - held[0]) < 0.02
+
+
+def test_a_trajectory_begins_at_its_step_and_not_before(world: World) -> None:
+    world.reset((("red_box",), (), ()))
+    arm = ArmController(world)
+    goal = HOME + [0.2, *[0.0] * 8]
+    begins = world.steps + 120
+    arm.follow(JOINTS, np.array([0.0, 1.0]), np.array([HOME, goal]), None, begins)
+    reach(world, arm, 0.5)
+    assert world.joint_state()[0] == pytest.approx(HOME, abs=2e-3)
+    reach(world, arm, 1.5)
+    assert world.joint_state()[0] == pytest.approx(goal, abs=5e-3)
+    with pytest.raises(TrajectoryError, match="was to start 2 s ago"):
+        arm.follow(JOINTS, np.array([0.0]), np.array([goal]), None, begins - 120)
+    assert not arm.moving

@@ -41,7 +41,7 @@ class Frame:
 class CameraRenderer:
     """A pinhole camera that looks at the bodies of a physics server.
 
-    What never moves is drawn once. The looks of the others are read once, see :meth:`forget`.
+    What never moves is drawn once. The looks of the others are read once.
 
     Args:
         client: physics server; in its world there is nothing yet but what never moves.
@@ -57,10 +57,6 @@ class CameraRenderer:
         self._backdrop = Canvas.empty(config.width, config.height)
         self._still = frozenset(self._bodies())
         self._draw(self._backdrop, self._still, {})
-
-    def forget(self, body: int) -> None:
-        """A body is gone; another one may get its number."""
-        self._looks.pop(body, None)
 
     def render(self, labels_by_body: Mapping[int, int]) -> Frame:
         """Renders the world as it is now; ``labels_by_body`` gives a block's label by body id."""

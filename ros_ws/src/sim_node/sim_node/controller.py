@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .trajectory import JointLimits, Trajectory
+from .trajectory import JointLimits, Trajectory, TrajectoryError
 from .world import World
 
 
@@ -19,7 +19,7 @@ class ArmController:
         self._world = world
         self.limits = JointLimits(world.arm.joints, world.lower, world.upper, world.max_velocity)
         self._trajectory: Trajectory | None = None
-        self._started = 0.0
+        self._begins = 0
         self._hold = self._world.arm.home_positions
 
     @property
@@ -33,8 +33,13 @@ class ArmController:
         times: NDArray[np.float64],
         positions: NDArray[np.float64],
         velocities: NDArray[np.float64] | None,
+        begins: int | None = None,
     ) -> Trajectory:
-        """Starts a trajectory now, in place of the running one; see :class:`Trajectory`.
+        """Starts a trajectory in place of the running one; see :class:`Trajectory`.
+
+        Args:
+            begins: the step of the physics at which it starts; the arm holds still until then.
+                None: now.
 
         Raises:
             TrajectoryError: if it is refused; the running one goes on.
@@ -43,16 +48,19 @@ class ArmController:
         trajectory = Trajectory(
             names, times, positions, velocities, self.limits, start, self._world.arm.start_tolerance
         )
-        self._trajectory, self._started = trajectory, self._world.time
+        now = self._world.steps
+        if begins is not None and begins < now:
+            late = (now - begins) * self._world.timestep
+            raise TrajectoryError(f"it was to start {late:.3g} s ago")
+        if begins is not None and begins > now:
+            self._hold_still()
+        self._trajectory, self._begins = trajectory, now if begins is None else begins
         return trajectory
 
     def stop(self) -> None:
         """Holds the present position of the arm; the fingers keep their target."""
-        positions, _, _ = self._world.joint_state()
-        arm = self._world.arm
-        is_finger = np.isin(arm.joints, arm.finger_joints)
-        positions = np.where(is_finger, self._target()[0], positions)
-        self._trajectory, self._hold = None, positions
+        self._hold_still()
+        self._trajectory = None
 
     def reset(self) -> None:
         """Forgets the trajectory and holds home, where the world's reset has put the arm."""
@@ -61,11 +69,25 @@ class ArmController:
     def update(self) -> None:
         """Commands the motors for the next physics step."""
         self._world.command(*self._target())
-        if self._trajectory and self._world.time - self._started > self._trajectory.duration:
+        if self._trajectory and self._elapsed > self._trajectory.duration:
             self._hold = self._trajectory.sample(np.inf)[0]
             self._trajectory = None
 
     def _target(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        if self._trajectory is None:
+        if self._trajectory is None or self._elapsed < 0.0:
             return self._hold, np.zeros_like(self._hold)
-        return self._trajectory.sample(self._world.time - self._started)
+        return self._trajectory.sample(self._elapsed)
+
+    @property
+    def _elapsed(self) -> float:
+        """Since the trajectory's start [s]; of whole steps, so that it is the same every time."""
+        return (self._world.steps - self._begins) * self._world.timestep
+
+    def _hold_still(self) -> None:
+        """Holds what an arm that moves has reached; one that rests keeps its target."""
+        if self._trajectory is None:
+            return
+        positions, _, _ = self._world.joint_state()
+        arm = self._world.arm
+        is_finger = np.isin(arm.joints, arm.finger_joints)
+        self._hold = np.where(is_finger, self._target()[0], positions)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Any, Final
 
 import rclpy
+from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
@@ -18,7 +19,7 @@ from std_msgs.msg import Header, String
 from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import ResetScene
 from tamp_runtime.messages.scene_graph import graph_to_message
-from tamp_runtime.messages.stamps import stamp_from_nanoseconds
+from tamp_runtime.messages.stamps import nanoseconds, stamp_from_nanoseconds
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.presence import Presence
@@ -72,8 +73,9 @@ class SimNode(Node):
         sim/ground_truth (tamp_interfaces/SceneGraph), latched: for evaluation and tests only
         diagnostics (diagnostic_msgs/DiagnosticArray): that it lives; a second simulator is noticed
     Subscribes:
-        joint_trajectory (trajectory_msgs/JointTrajectory): replaces the running one; a malformed
-            one is refused with a logged reason; one without points stops the arm
+        joint_trajectory (trajectory_msgs/JointTrajectory): replaces the running one, at once or at
+            the time of its stamp; a malformed or belated one is refused with a logged reason; one
+            without points stops the arm
         diagnostics (diagnostic_msgs/DiagnosticArray): of the other nodes
     Services:
         sim/reset (tamp_interfaces/ResetScene)
@@ -183,7 +185,9 @@ class SimNode(Node):
                 if not message.points:
                     self._arm.stop()
                     return
-                trajectory = self._arm.follow(message.joint_names, *trajectory_arrays(message))
+                trajectory = self._arm.follow(
+                    message.joint_names, *trajectory_arrays(message), self._step_at(message.header)
+                )
                 self.get_logger().info(
                     f"following a trajectory of {len(message.points)} points, "
                     f"{trajectory.duration:.1f} s"
@@ -200,10 +204,11 @@ class SimNode(Node):
             layout = requested_layout(
                 request.layout, request.seed, request.blocks, self._config.stack_count
             )
-            self._physics.call(lambda: self._reset(layout, request.seed))
+            stamp = self._physics.call(lambda: self._reset(layout, request.seed))
             response.success = True
             response.message = f"the scene is {format_stacks(layout)}"
             response.layout = format_layout(layout)
+            response.stamp = stamp
         except LayoutError as error:
             self._refuse(response, f"{error}; the scene is unchanged")
         except PhysicsError as error:
@@ -235,11 +240,14 @@ class SimNode(Node):
         if self._turns % STATES_PER_FRAME == 0:
             self._publish_frame()
 
-    def _reset(self, layout: Stacks, seed: int) -> None:
+    def _reset(self, layout: Stacks, seed: int) -> Time:
+        """Returns the time at which the scene was as it was asked for."""
         self._world.reset(layout, seed)
         self._arm.reset()
+        self._turns = 0  # so that pictures are taken at the same moments every time
         self._truth = true_scene_graph(self._world)
         self._start_pacing()
+        return self._stamp()
 
     def _start_pacing(self) -> None:
         self._pacer.change(self._world.time, self._real_time_factor)
@@ -253,8 +261,15 @@ class SimNode(Node):
             time.sleep(_FAREWELL_SECONDS)
             self._on_failure()
 
-    def _stamp(self) -> Any:
+    def _stamp(self) -> Time:
         return stamp_from_nanoseconds(self._start_nanoseconds + round(self._world.time * 1e9))
+
+    def _step_at(self, header: Header) -> int | None:
+        """The step of the physics that a stamp means; None for no stamp: now."""
+        stamp = nanoseconds(header.stamp)
+        if stamp == 0:
+            return None
+        return round((stamp - self._start_nanoseconds) / 1e9 / self._world.timestep)
 
     def _publish_state(self) -> None:
         stamp = self._stamp()

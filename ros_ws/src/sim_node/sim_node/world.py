@@ -28,7 +28,7 @@ class World:
         config: what stands where.
         arm: which arm it is; arrays over its n joints are in the order of ``arm.joints``.
         timestep: of the physics [s].
-        time: simulated time since the world was made [s].
+        steps: of the physics since the world was made.
         client, robot: pybullet's ids of the physics server and of the arm's body.
         joint_indices: pybullet's numbers of the arm's joints, n of them.
         lower, upper, max_effort, max_velocity: limits of the joints by the URDF, shape (n,) [rad
@@ -48,34 +48,9 @@ class World:
         self.arm = arm
         self.timestep = timestep
         self.client = pybullet.connect(pybullet.DIRECT)
-        self._bodies: dict[str, int] = {}
-        self._labels: dict[str, int] = {}
-        self.time = 0.0
-        pybullet.setPhysicsEngineParameter(
-            fixedTimeStep=timestep, numSolverIterations=100, physicsClientId=self.client
-        )
-        pybullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
-        create_table(self.client)
-        self._camera = CameraRenderer(self.client, self.config.camera)
-        self.robot = pybullet.loadURDF(
-            str(light_urdf(arm.urdf)),
-            useFixedBase=True,
-            flags=pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT,
-            physicsClientId=self.client,
-        )
-        infos = [
-            pybullet.getJointInfo(self.robot, index, physicsClientId=self.client)
-            for index in range(pybullet.getNumJoints(self.robot, physicsClientId=self.client))
-        ]
-        by_name = {info[1].decode(): info for info in infos}
-        joints = [by_name[name] for name in arm.joints]
-        self.joint_indices = [info[0] for info in joints]
-        self.lower, self.upper, self.max_effort, self.max_velocity = (
-            np.array([info[column] for info in joints]) for column in range(8, 12)
-        )
-        self._gains, self._velocity_gains = arm.gains, np.ones(len(joints))
-        self._couple_fingers(*(by_name[name][0] for name in arm.finger_joints))
-        self._send_home()
+        self.steps = 0
+        self._urdf = str(light_urdf(arm.urdf))
+        self._build()
 
     def __enter__(self) -> World:
         return self
@@ -87,6 +62,11 @@ class World:
         """Disconnects from the physics server; the world cannot be used afterwards."""
         if pybullet.isConnected(self.client):
             pybullet.disconnect(self.client)
+
+    @property
+    def time(self) -> float:
+        """Simulated time since the world was made [s]."""
+        return self.steps * self.timestep
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -102,19 +82,16 @@ class World:
         return self._bodies[name]
 
     def reset(self, layout: Stacks, seed: int = 0, settle_time: float = 0.3) -> None:
-        """Removes all blocks, builds a layout, sends the arm home and lets everything settle.
+        """Builds the world anew with a layout and the arm at home, and lets everything settle.
 
-        ``seed`` draws the small offsets with which blocks are put down, and the labels.
+        What was before leaves no trace: the same layout, seed and commands give the same physics
+        bit by bit. ``seed`` draws the small offsets with which blocks are put down, and the labels.
 
         Raises:
             LayoutError: if the layout is impossible; the world is then as it was.
         """
         check_layout(layout, self.config.stack_count)
-        for body in self._bodies.values():
-            pybullet.removeBody(body, physicsClientId=self.client)
-            self._camera.forget(body)
-        self._bodies.clear()
-        self._send_home()
+        self._build()
         rng = np.random.default_rng(seed)
         config = self.config
         for stack, base in zip(layout, config.stack_positions):
@@ -154,7 +131,7 @@ class World:
     def step(self) -> None:
         """Advances by one time step."""
         pybullet.stepSimulation(physicsClientId=self.client)
-        self.time += self.timestep
+        self.steps += 1
 
     def joint_state(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Positions, velocities and efforts of the joints, shapes (n,)."""
@@ -191,6 +168,37 @@ class World:
     def render(self) -> Frame:
         """What the camera sees now."""
         return self._camera.render({self._bodies[name]: self._labels[name] for name in self.names})
+
+    def _build(self) -> None:
+        """Table, camera and arm, and no blocks, in an empty physics server."""
+        arm = self.arm
+        pybullet.resetSimulation(physicsClientId=self.client)
+        pybullet.setPhysicsEngineParameter(
+            fixedTimeStep=self.timestep, numSolverIterations=100, physicsClientId=self.client
+        )
+        pybullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
+        create_table(self.client)
+        self._camera = CameraRenderer(self.client, self.config.camera)
+        self._bodies: dict[str, int] = {}
+        self.robot = pybullet.loadURDF(
+            self._urdf,
+            useFixedBase=True,
+            flags=pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT,
+            physicsClientId=self.client,
+        )
+        infos = [
+            pybullet.getJointInfo(self.robot, index, physicsClientId=self.client)
+            for index in range(pybullet.getNumJoints(self.robot, physicsClientId=self.client))
+        ]
+        by_name = {info[1].decode(): info for info in infos}
+        joints = [by_name[name] for name in arm.joints]
+        self.joint_indices = [info[0] for info in joints]
+        self.lower, self.upper, self.max_effort, self.max_velocity = (
+            np.array([info[column] for info in joints]) for column in range(8, 12)
+        )
+        self._gains, self._velocity_gains = arm.gains, np.ones(len(joints))
+        self._couple_fingers(*(by_name[name][0] for name in arm.finger_joints))
+        self._send_home()
 
     def _send_home(self) -> None:
         home = self.arm.home_positions
