@@ -10,32 +10,21 @@ from typing import Any, Final
 
 import rclpy
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import TransformStamped
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
-from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import CameraInfo, Image, JointState
-from std_msgs.msg import Header, String
-from tamp_interfaces.msg import SceneGraph
+from std_msgs.msg import Header
 from tamp_interfaces.srv import ResetScene
-from tamp_runtime.messages.scene_graph import graph_to_message
 from tamp_runtime.messages.stamps import nanoseconds, stamp_from_nanoseconds
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.presence import Presence
-from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
+from tamp_runtime.qos import RELIABLE
 from trajectory_msgs.msg import JointTrajectory
 
 from scene_graph import Stacks, format_stacks
 
 from .controller import ArmController
-from .conversions import (
-    WORLD_FRAME,
-    camera_messages,
-    extrinsics_message,
-    joint_state_message,
-    trajectory_arrays,
-)
+from .conversions import trajectory_arrays
 from .ground_truth import standing_blocks, true_scene_graph
 from .layouts import LayoutError, format_layout, requested_layout
 from .pacing import Pacer
@@ -43,8 +32,8 @@ from .parameters import PARAMETERS, first_layout
 from .physics_thread import PhysicsError, PhysicsThread
 from .scene import SceneConfig
 from .simulated_arms import SIMULATED_ARMS
+from .topics import SimTopics
 from .trajectory import TrajectoryError
-from .urdf import robot_description
 from .world import World
 
 #: Physics steps between two joint states (60 Hz) and joint states between two pictures (10 Hz).
@@ -95,14 +84,14 @@ class SimNode(Node):
         values = declare_parameters(self, PARAMETERS, self._parameters_changed)
         self._config = SceneConfig()
         layout = first_layout(values, self._config.stack_count)
-        self._create_publishers()
+        self._topics = SimTopics(self)
 
         self._world = World(self._config, arm=SIMULATED_ARMS[values["robot"]])
         self._arm = ArmController(self._world)
         self._world.reset(layout, values["seed"])
         # The clock starts at the host's time, so that it goes on forward when the node restarts.
         self._start_nanoseconds = time.time_ns()
-        self._publish_descriptions(values["mesh_uris"])
+        self._topics.publish_descriptions(self._world, values["mesh_uris"], self._stamp())
         self.get_logger().info(f"scene {format_stacks(layout)}")
 
         self._truth = true_scene_graph(self._world)
@@ -131,18 +120,6 @@ class SimNode(Node):
 
     # Set-up
 
-    def _create_publishers(self) -> None:
-        self._image = self.create_publisher(Image, "camera/image_raw", NEWEST)
-        self._depth = self.create_publisher(Image, "camera/depth/image_raw", NEWEST)
-        self._labels = self.create_publisher(Image, "camera/segmentation", NEWEST)
-        self._info = self.create_publisher(CameraInfo, "camera/camera_info", NEWEST)
-        self._depth_info = self.create_publisher(CameraInfo, "camera/depth/camera_info", NEWEST)
-        self._extrinsics = self.create_publisher(TransformStamped, "camera/extrinsics", LATCHED)
-        self._joint_states = self.create_publisher(JointState, "joint_states", SENSOR_DATA)
-        self._clock_topic = self.create_publisher(Clock, "clock", SENSOR_DATA)
-        self._description = self.create_publisher(String, "robot_description", LATCHED)
-        self._ground_truth = self.create_publisher(SceneGraph, "sim/ground_truth", LATCHED)
-
     def _create_ears(self) -> None:
         # One after the other: of two trajectories the later one must be the last to be followed.
         self.create_subscription(
@@ -160,17 +137,6 @@ class SimNode(Node):
             callback_group=MutuallyExclusiveCallbackGroup(),
         )
         self._presence = Presence(self, "sim_node")
-
-    def _publish_descriptions(self, mesh_uris: str) -> None:
-        extrinsics = extrinsics_message(self._config.camera, self._stamp())
-        self._extrinsics.publish(extrinsics)
-        self._description.publish(String(data=robot_description(self._world.arm, mesh_uris)))
-        try:
-            from tf2_msgs.msg import TFMessage
-        except ImportError:  # not among the PyPI packages
-            return
-        self._tf_static = self.create_publisher(TFMessage, "tf_static", LATCHED)
-        self._tf_static.publish(TFMessage(transforms=[extrinsics]))
 
     # Callbacks: they only hand work to the physics thread
 
@@ -235,10 +201,13 @@ class SimNode(Node):
         for _ in range(STEPS_PER_STATE):
             self._arm.update()
             self._world.step()
-        self._publish_state()
+        stamp = self._stamp()
+        self._topics.publish_state(self._world, stamp)
         self._turns += 1
         if self._turns % STATES_PER_FRAME == 0:
-            self._publish_frame()
+            self._truth = true_scene_graph(self._world)
+            self._topics.publish_truth(self._truth, stamp)
+            self._topics.publish_picture(self._world, stamp)
 
     def _reset(self, layout: Stacks, seed: int) -> Time:
         """Returns the time at which the scene was as it was asked for."""
@@ -270,26 +239,6 @@ class SimNode(Node):
         if stamp == 0:
             return None
         return round((stamp - self._start_nanoseconds) / 1e9 / self._world.timestep)
-
-    def _publish_state(self) -> None:
-        stamp = self._stamp()
-        self._clock_topic.publish(Clock(clock=stamp))
-        self._joint_states.publish(
-            joint_state_message(self._world.arm.joints, *self._world.joint_state(), stamp)
-        )
-
-    def _publish_frame(self) -> None:
-        stamp = self._stamp()
-        self._truth = true_scene_graph(self._world)
-        self._ground_truth.publish(
-            graph_to_message(self._truth, Header(stamp=stamp, frame_id=WORLD_FRAME))
-        )
-        topics = (self._image, self._depth, self._labels, self._info, self._depth_info)
-        if not any(topic.get_subscription_count() for topic in topics):
-            return
-        messages = camera_messages(self._world.render(), self._config.camera, stamp)
-        for topic, message in zip(topics, messages):
-            topic.publish(message)
 
 
 def run() -> int:
