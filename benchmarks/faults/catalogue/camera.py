@@ -186,7 +186,7 @@ FAULTS = (
     Fault(
         "extrinsics-never", "perception starts and no extrinsics arrive",
         All((Damaged((EXTRINSICS,), Drop()), Restarted("perception_node"))),
-        (Phase.PERCEIVE,), (("extrinsics",),),
+        (Phase.PERCEIVE,), (("extrinsics", "nothing has arrived from perception"),),
     ),
     # What no camera can tell
     Fault(

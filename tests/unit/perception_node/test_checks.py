@@ -4,6 +4,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -46,6 +47,32 @@ def test_fault_13_colours_that_are_noise_are_said_to_be(observations: list[Obser
     for observation in observations:
         noise = rng.integers(0, 256, observation.rgb.shape).astype(np.uint8)
         assert "no common colour" in refusal(replace(observation, rgb=noise))
+
+
+def test_a_mirrored_picture_is_not_taken_for_other_blocks(observations: list[Observation]) -> None:
+    """The masks then cover what stands there in the mirror: the table, if nothing does."""
+    for observation in observations:
+        message = refusal(replace(observation, rgb=observation.rgb[:, ::-1].copy()))
+        assert "shows the same pixels as camera/segmentation" in message
+
+
+@pytest.mark.parametrize("light", [1.0, 0.3])
+@pytest.mark.parametrize("by", [-2, 2])
+def test_masks_two_pixels_too_small_or_too_large_still_have_edges(
+    observations: list[Observation], light: float, by: int
+) -> None:
+    kernel = np.ones((5, 5), np.uint8)
+    for observation in observations:
+        labels = observation.labels
+        assert labels is not None
+        changed = np.zeros_like(labels)
+        for label in np.unique(labels[labels > 0]):
+            mask = (labels == label).astype(np.uint8)
+            mask = cv2.dilate(mask, kernel) if by > 0 else cv2.erode(mask, kernel)
+            changed[(mask > 0) & (changed == 0)] = label
+        rgb = (light * observation.rgb).astype(np.uint8)
+        perceived = PERCEPTION.perceive(replace(observation, rgb=rgb, labels=changed))
+        assert "the colour of what is around" not in perceived.message
 
 
 def test_grain_is_no_noise(observations: list[Observation]) -> None:

@@ -19,12 +19,19 @@ MAX_OTHERS: Final = 0.4
 #: Greatest middle range of a block's chromaticity (share of a channel in the sum of the three).
 #: One colour has 0.01, with grain of 20 grey levels up to 0.16 where it is dark; noise has 0.24.
 MAX_COLOR_RANGE: Final = 0.2
+#: Least share of a block's edge at which the picture changes: of blocks it is nearly all, even
+#: blurred and with masks two pixels too small or too large at least 0.45.
+MIN_EDGE: Final = 0.25
+#: Pixels this far apart on both sides of an edge are compared [px], and differ by so much in some
+#: channel [0..255].
+EDGE_WIDTH: Final = 6
+EDGE_CONTRAST: Final = 10
 #: Of a block about so many pixels are looked at.
 PIXELS: Final = 300
 
 
 def check_segments(rgb: NDArray[np.uint8], segments: Segments) -> None:
-    """Refuses masks that are scattered among one another, and blocks that are of every colour.
+    """Refuses masks that are scattered or have no edge in the picture, and blocks of every colour.
 
     Args:
         rgb: shape (height, width, 3).
@@ -35,8 +42,13 @@ def check_segments(rgb: NDArray[np.uint8], segments: Segments) -> None:
     for segment in segments:
         left, top, width, height = cv2.boundingRect(segment.part.astype(np.uint8))
         box = np.s_[top : top + height, left : left + width]
-        part = segment.part[box]
-        if (others := _others(segments.label_image[box], part, segment.label)) > MAX_OTHERS:
+        around = np.s_[
+            max(0, top - EDGE_WIDTH) : top + height + EDGE_WIDTH,
+            max(0, left - EDGE_WIDTH) : left + width + EDGE_WIDTH,
+        ]
+        part, outline = segment.part[box], _outline(segment.part[around])
+        labels = segments.label_image[around]
+        if (others := _others(labels, outline, segment.label)) > MAX_OTHERS:
             raise BadImageError(
                 f"{others:.0%} of what label {segment.label} surrounds has other labels: they are "
                 "scattered; check camera/segmentation"
@@ -46,16 +58,41 @@ def check_segments(rgb: NDArray[np.uint8], segments: Segments) -> None:
                 f"the pixels of label {segment.label} have no common colour; check "
                 "camera/image_raw, and that it shows the same pixels as camera/segmentation"
             )
+        if _edge_share(rgb[around], outline, labels == 0) < MIN_EDGE:
+            raise BadImageError(
+                f"what label {segment.label} covers has the colour of what is around it; check "
+                "camera/image_raw, and that it shows the same pixels as camera/segmentation"
+            )
 
 
-def _others(label_image: NDArray[np.integer], part: Mask, label: int) -> float:
-    """The share of a part's convex outline that has the labels of others, 0..1."""
-    points = cv2.findNonZero(part.astype(np.uint8))
+def _outline(part: Mask) -> Mask:
+    """A part's convex outline, filled."""
     region = np.zeros(part.shape, np.uint8)
+    points = cv2.findNonZero(part.astype(np.uint8))
     cv2.fillConvexPoly(region, cv2.convexHull(points), 1)
-    inside = label_image[region.astype(bool)]
+    return region.astype(bool)
+
+
+def _others(label_image: NDArray[np.integer], outline: Mask, label: int) -> float:
+    """The share of a block's outline that has the labels of others, 0..1."""
+    inside = label_image[outline]
     others = np.count_nonzero((inside != 0) & (inside != label))
     return others / max(1, inside.size)
+
+
+def _edge_share(rgb: NDArray[np.uint8], outline: Mask, unlabelled: Mask) -> float:
+    """At how much of an outline's edge towards what has no label the picture changes, 0..1."""
+    outside = unlabelled & ~outline
+    colors = rgb.astype(np.int16)
+    changes = total = 0
+    for axis in (0, 1):
+        lower = (slice(None),) * axis + (slice(None, -EDGE_WIDTH),)
+        upper = (slice(None),) * axis + (slice(EDGE_WIDTH, None),)
+        crossing = (outline[lower] & outside[upper]) | (outside[lower] & outline[upper])
+        contrast = np.abs(colors[lower][crossing] - colors[upper][crossing]).max(1, initial=0)
+        changes += int(np.count_nonzero(contrast > EDGE_CONTRAST))
+        total += len(contrast)
+    return changes / total if total else 1.0
 
 
 def _color_range(pixels: NDArray[np.uint8]) -> float:
