@@ -33,7 +33,7 @@ def noise(radians: float, seed: int) -> Callable[[float], Array]:
     return lambda _stamp: rng.normal(0.0, radians, 7)
 
 
-def test_fault_joints_shaken_states_of_joints_that_only_shake_are_refused() -> None:
+def test_fault_13_states_of_joints_that_only_shake_are_refused() -> None:
     box = ArmStateBox()
     hear(box, noise(0.009, seed=5), 0.0, 30.0)
     assert "the joints shake" in box.problem

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Joint states that go to and fro without getting anywhere: noise, which no arm comes to rest in."""
+"""Joint states that go to and fro without getting anywhere: noise, in which nothing rests."""
 
 from __future__ import annotations
 

@@ -108,8 +108,8 @@ class SceneWatch:
                 f"the newest scene graph is stamped {-age:.1f} s in the future; does use_sim_time "
                 "have the same value on all nodes, or was the simulation just restarted?"
             )
-        # What perception refuses is not planned on: its reason says more than its age, and it may be
-        # said less often than every graph_max_age of a simulation that runs faster than life.
+        # What perception refuses is not planned on: its reason says more than its age, and in a
+        # simulation that runs faster than life it is said less often than every graph_max_age.
         if age > limit and sighting.status == GraphStatus.CONFIDENT:
             raise NotConfidentError(
                 f"the newest scene graph is {age:.1f} s old; are the camera and perception_node "
