@@ -21,8 +21,9 @@ class Shaking:
     """Judges positions stretch by stretch."""
 
     def __init__(self) -> None:
-        self._in_a_row = 0
-        self._begin(0.0, None)
+        self._in_a_row, self._since, self._states, self._way, self._step = 0, 0.0, 0, 0.0, 0.0
+        self._first: JointValues | None = None
+        self._last: JointValues | None = None
 
     def problem(self, stamp: float, positions: JointValues, resting: float) -> str:
         """Takes in the next state; what is wrong with the last ones, empty: nothing.
@@ -31,16 +32,16 @@ class Shaking:
             stamp: by the clock of the arm's driver [s].
             resting: for how long no joint has moved, by that clock [s].
         """
-        if self._last is None or stamp < self._since or resting >= _STANDING_SECONDS:
+        first, last = self._first, self._last
+        if first is None or last is None or stamp < self._since or resting >= _STANDING_SECONDS:
             self._in_a_row = 0
             self._begin(stamp, positions)
             return ""
-        assert self._first is not None
         self._states += 1
-        self._way += float(max(positions.furthest(self._last)))
+        self._way += float(max(positions.furthest(last)))
         self._last = positions
         if stamp - self._since >= _STRETCH_SECONDS and self._states >= _STRETCH_STATES:
-            got = float(max(positions.furthest(self._first)))
+            got = float(max(positions.furthest(first)))
             shaken = self._way > _TO_AND_FRO * got
             self._in_a_row = self._in_a_row + 1 if shaken else 0
             self._step = self._way / self._states
@@ -52,6 +53,6 @@ class Shaking:
             "without getting anywhere, so nobody can tell when the arm is at rest"
         )
 
-    def _begin(self, stamp: float, positions: JointValues | None) -> None:
+    def _begin(self, stamp: float, positions: JointValues) -> None:
         self._since, self._states, self._way = stamp, 0, 0.0
         self._first = self._last = positions
