@@ -49,7 +49,7 @@ def test_rest_takes_its_time(arm: SimulatedArm) -> None:
 
 def test_an_arm_that_shakes_is_one_whose_states_cannot_be_used(arm: SimulatedArm) -> None:
     arm.trembling = 0.01
-    with pytest.raises(ExecutionError, match="the joints shake by 0.010 rad") as caught:
+    with pytest.raises(ExecutionError, match="the joints shake by") as caught:
         Follower(arm, arm.send, ExecutionSettings()).wait_for_rest(lambda: False)
     assert caught.value.reason is MotionReason.NO_JOINT_STATES
 
