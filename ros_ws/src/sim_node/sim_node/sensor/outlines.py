@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 Labels = NDArray[np.uint16]
 
 _NEIGHBOURS: Final = np.ones((3, 3), np.uint8)
-#: Standard deviation of the Gaussian over which outlines wobble together [px].
-_WOBBLE: Final = 3.0
 
 
 def eroded(frame: Frame, pixels: int, _rng: np.random.Generator) -> Labels:
@@ -76,8 +74,10 @@ def boundary(frame: Frame, pixels: int, rng: np.random.Generator) -> Labels:
 
 def _wobble(shape: tuple[int, int], pixels: int, rng: np.random.Generator) -> NDArray[np.int64]:
     """Whole numbers, uniform over −pixels..pixels, smooth over the picture."""
-    margin = int(np.ceil(3.0 * _WOBBLE))
-    kernel = cv2.getGaussianKernel(2 * margin + 1, _WOBBLE, cv2.CV_32F)
+    # Waves so long that outlines bend but do not fold over: noise under a Gaussian of this width.
+    width = 2.0 + pixels
+    margin = int(np.ceil(3.0 * width))
+    kernel = cv2.getGaussianKernel(2 * margin + 1, width, cv2.CV_32F)
     wide = rng.standard_normal((shape[0] + 2 * margin, shape[1] + 2 * margin), np.float32)
     inner = cv2.sepFilter2D(wide, cv2.CV_32F, kernel, kernel)[margin:-margin, margin:-margin]
     uniform = ndtr(inner / float((kernel**2).sum()))
