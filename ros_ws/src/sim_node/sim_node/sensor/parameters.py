@@ -187,8 +187,9 @@ SENSOR_PARAMETERS: Final = (
     ParameterSpec(
         "sensor.delivery.reliability",
         _RELIABLE,
-        "of the cameras' publishers; Fast DDS drops best-effort pictures of more than 0.5 MB "
-        "(320x240 in colour have 0.23 MB, 640x480 0.92 MB)",
+        "of the cameras' publishers; of best-effort messages Fast DDS loses, between processes, "
+        "what does not fit into its 0.5 MB of shared memory (a picture of 256x256 has 0.6 MB in "
+        "all): some of small pictures, most of large ones",
         read_only=True,
         check=_one_of("sensor.delivery.reliability", _RELIABILITIES),
     ),
