@@ -16,14 +16,22 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from .camera import Frame
 from .scene import CameraConfig
+from .sensor.config import METRES, MILLIMETRES
+from .sensor.depth import millimetres
 from .trajectory import TrajectoryError
 
 WORLD_FRAME = "world"
 CAMERA_FRAME = "camera_optical_frame"
 
 
-def camera_messages(frame: Frame, config: CameraConfig, stamp: Time) -> tuple:
-    """Colour, depth and segmentation image and the infos of colour and depth, with one header."""
+def camera_messages(
+    frame: Frame, config: CameraConfig, stamp: Time, depth_encoding: str = METRES
+) -> tuple:
+    """Colour, depth and segmentation image and the infos of colour and depth, with one header.
+
+    Args:
+        depth_encoding: METRES or MILLIMETRES.
+    """
     header = Header(stamp=stamp, frame_id=CAMERA_FRAME)
     k = config.intrinsics
     info = CameraInfo(
@@ -36,9 +44,10 @@ def camera_messages(frame: Frame, config: CameraConfig, stamp: Time) -> tuple:
         r=np.eye(3).ravel().tolist(),
         p=np.hstack([k, np.zeros((3, 1))]).ravel().tolist(),
     )
+    depth = millimetres(frame.depth) if depth_encoding == MILLIMETRES else frame.depth
     return (
         image_from_array(frame.rgb, "rgb8", header),
-        image_from_array(frame.depth, "32FC1", header),
+        image_from_array(depth, depth_encoding, header),
         image_from_array(frame.labels, "16UC1", header),
         info,
         info,

@@ -31,6 +31,7 @@ from .pacing import Pacer
 from .parameters import PARAMETERS, first_layout
 from .physics_thread import PhysicsError, PhysicsThread
 from .scene import SceneConfig
+from .sensor.parameters import sensor_from_parameters
 from .simulated_arms import SIMULATED_ARMS
 from .topics import SimTopics
 from .trajectory import TrajectoryError
@@ -53,7 +54,8 @@ class SimNode(Node):
     Publishes:
         camera/image_raw, camera/depth/image_raw, camera/segmentation (sensor_msgs/Image),
             camera/camera_info and camera/depth/camera_info (sensor_msgs/CameraInfo), at 10 Hz of
-            simulated time; the depth is registered, so both infos are the same
+            simulated time; the depth is registered, so both infos are the same; with the errors
+            that the parameters sensor.* ask for, by default none
         camera/extrinsics (geometry_msgs/TransformStamped), latched; also on tf_static where
             tf2_msgs is installed
         joint_states (sensor_msgs/JointState) and clock (rosgraph_msgs/Clock), at 60 Hz; nodes in a
@@ -84,11 +86,13 @@ class SimNode(Node):
         values = declare_parameters(self, PARAMETERS, self._parameters_changed)
         self._config = SceneConfig()
         layout = first_layout(values, self._config.stack_count)
-        self._topics = SimTopics(self)
+        self._values = values
+        self._topics = SimTopics(self, sensor_from_parameters(values))
 
         self._world = World(self._config, arm=SIMULATED_ARMS[values["robot"]])
         self._arm = ArmController(self._world)
         self._world.reset(layout, values["seed"])
+        self._topics.restart_pictures(values["seed"])
         # The clock starts at the host's time, so that it goes on forward when the node restarts.
         self._start_nanoseconds = time.time_ns()
         self._topics.publish_descriptions(self._world, values["mesh_uris"], self._stamp())
@@ -144,6 +148,10 @@ class SimNode(Node):
         if "real_time_factor" in values:
             self._real_time_factor = values["real_time_factor"]
             self._physics.post(self._start_pacing)
+        self._values = {**self._values, **values}
+        if any(name.startswith("sensor.") for name in values):
+            sensor = sensor_from_parameters(self._values)
+            self._physics.post(lambda: self._topics.configure(sensor))
 
     def _on_trajectory(self, message: JointTrajectory) -> None:
         def command() -> None:
@@ -214,6 +222,7 @@ class SimNode(Node):
         self._world.reset(layout, seed)
         self._arm.reset()
         self._turns = 0  # so that pictures are taken at the same moments every time
+        self._topics.restart_pictures(seed)
         self._truth = true_scene_graph(self._world)
         self._start_pacing()
         return self._stamp()

@@ -11,6 +11,7 @@ from tamp_runtime.parameters import ParameterSpec
 from scene_graph import Stacks
 
 from .layouts import MAX_BLOCKS, MIN_RANDOM_BLOCKS, requested_layout
+from .sensor.parameters import SENSOR_PARAMETERS
 from .simulated_arms import PANDA, SIMULATED_ARMS
 from .urdf import BOXES, mesh_uris_problem
 
@@ -58,6 +59,7 @@ PARAMETERS: Final = (
         "all empty: random by seed",
         read_only=True,
     ),
+    *SENSOR_PARAMETERS,
 )
 
 

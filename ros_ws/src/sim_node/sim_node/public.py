@@ -14,6 +14,14 @@ from .layouts import (
     random_layout,
 )
 from .scene import CameraConfig, SceneConfig
+from .sensor import (
+    ColorConfig,
+    DeliveryConfig,
+    DepthConfig,
+    SegmentationConfig,
+    SensorConfig,
+    sense,
+)
 from .simulated_arms import SIMULATED_ARMS, SimulatedArm
 from .trajectory import JointLimits, Trajectory, TrajectoryError
 from .urdf import robot_description
@@ -23,10 +31,15 @@ __all__ = [
     "SIMULATED_ARMS",
     "ArmController",
     "CameraConfig",
+    "ColorConfig",
+    "DeliveryConfig",
+    "DepthConfig",
     "Frame",
     "JointLimits",
     "LayoutError",
     "SceneConfig",
+    "SegmentationConfig",
+    "SensorConfig",
     "SimulatedArm",
     "Trajectory",
     "TrajectoryError",
@@ -38,5 +51,6 @@ __all__ = [
     "random_arrangement",
     "random_layout",
     "robot_description",
+    "sense",
     "true_scene_graph",
 ]

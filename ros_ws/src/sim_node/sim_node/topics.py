@@ -7,32 +7,33 @@ from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import CameraInfo, Image, JointState
+from sensor_msgs.msg import JointState
 from std_msgs.msg import Header, String
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_runtime.messages.scene_graph import graph_to_message
-from tamp_runtime.qos import LATCHED, NEWEST, SENSOR_DATA
+from tamp_runtime.qos import LATCHED, SENSOR_DATA
 
 from scene_graph import SceneGraph
 
-from .conversions import WORLD_FRAME, camera_messages, extrinsics_message, joint_state_message
+from .camera_topics import CameraTopics
+from .conversions import WORLD_FRAME, extrinsics_message, joint_state_message
+from .sensor import SensorConfig
 from .urdf import robot_description
 from .world import World
 
 
 class SimTopics:
-    """The publishers of :class:`~sim_node.node.SimNode`."""
+    """The publishers of :class:`~sim_node.node.SimNode`.
 
-    def __init__(self, node: Node) -> None:
+    Args:
+        node: it gets the publishers.
+        sensor: what is wrong with its cameras.
+    """
+
+    def __init__(self, node: Node, sensor: SensorConfig) -> None:
         self._node = node
         create = node.create_publisher
-        self._images = (
-            create(Image, "camera/image_raw", NEWEST),
-            create(Image, "camera/depth/image_raw", NEWEST),
-            create(Image, "camera/segmentation", NEWEST),
-            create(CameraInfo, "camera/camera_info", NEWEST),
-            create(CameraInfo, "camera/depth/camera_info", NEWEST),
-        )
+        self._cameras = (CameraTopics(node, sensor),)
         self._extrinsics = create(TransformStamped, "camera/extrinsics", LATCHED)
         self._joint_states = create(JointState, "joint_states", SENSOR_DATA)
         self._clock = create(Clock, "clock", SENSOR_DATA)
@@ -52,11 +53,13 @@ class SimTopics:
         self._tf_static.publish(TFMessage(transforms=[extrinsics]))
 
     def publish_state(self, world: World, stamp: Time) -> None:
-        """The time, and the arm's joints."""
+        """The time, the arm's joints, and pictures that were on their way until now."""
         self._clock.publish(Clock(clock=stamp))
         self._joint_states.publish(
             joint_state_message(world.arm.joints, *world.joint_state(), stamp)
         )
+        for camera in self._cameras:
+            camera.deliver(world.time)
 
     def publish_truth(self, truth: SceneGraph, stamp: Time) -> None:
         """For evaluation and tests only."""
@@ -65,8 +68,15 @@ class SimTopics:
 
     def publish_picture(self, world: World, stamp: Time) -> None:
         """What the camera sees; drawn only if somebody wants it."""
-        if not any(topic.get_subscription_count() for topic in self._images):
-            return
-        messages = camera_messages(world.render(), world.config.camera, stamp)
-        for topic, message in zip(self._images, messages):
-            topic.publish(message)
+        for camera in self._cameras:
+            camera.take(world.render, world.config.camera, stamp, world.time)
+
+    def configure(self, sensor: SensorConfig) -> None:
+        """What is wrong with the cameras from now on."""
+        for camera in self._cameras:
+            camera.configure(sensor)
+
+    def restart_pictures(self, seed: int) -> None:
+        """Begins their errors anew, for a scene of this seed."""
+        for camera in self._cameras:
+            camera.restart(seed)
