@@ -25,12 +25,13 @@ from scene_graph import Stacks, format_stacks
 
 from .controller import ArmController
 from .conversions import trajectory_arrays
+from .generators import requested_layout
 from .ground_truth import standing_blocks, true_scene_graph
-from .layouts import LayoutError, format_layout, requested_layout
+from .layouts import LayoutError, format_layout
 from .pacing import Pacer
 from .parameters import PARAMETERS, first_layout
 from .physics_thread import PhysicsError, PhysicsThread
-from .scene import SceneConfig
+from .scene import load_scene
 from .simulated_arms import SIMULATED_ARMS
 from .topics import SimTopics
 from .trajectory import TrajectoryError
@@ -82,11 +83,11 @@ class SimNode(Node):
         self._on_failure = on_failure
         self._failed = False
         values = declare_parameters(self, PARAMETERS, self._parameters_changed)
-        self._config = SceneConfig()
-        layout = first_layout(values, self._config.stack_count)
+        self._scene = load_scene(values["scene"])
+        layout = first_layout(values, self._scene)
         self._topics = SimTopics(self)
 
-        self._world = World(self._config, arm=SIMULATED_ARMS[values["robot"]])
+        self._world = World(self._scene, arm=SIMULATED_ARMS[values["robot"]])
         self._arm = ArmController(self._world)
         self._world.reset(layout, values["seed"])
         # The clock starts at the host's time, so that it goes on forward when the node restarts.
@@ -168,7 +169,7 @@ class SimNode(Node):
     ) -> ResetScene.Response:
         try:
             layout = requested_layout(
-                request.layout, request.seed, request.blocks, self._config.stack_count
+                self._scene, request.layout, request.seed, request.blocks, request.generator
             )
             stamp = self._physics.call(lambda: self._reset(layout, request.seed))
             response.success = True

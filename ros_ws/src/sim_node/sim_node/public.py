@@ -3,6 +3,7 @@
 
 from .camera import Frame
 from .controller import ArmController
+from .generators import GENERATORS, generate_layout
 from .ground_truth import true_scene_graph
 from .layouts import (
     LayoutError,
@@ -13,28 +14,45 @@ from .layouts import (
     random_arrangement,
     random_layout,
 )
-from .scene import CameraConfig, SceneConfig
+from .scene import (
+    Block,
+    CameraConfig,
+    Obstacle,
+    SceneConfig,
+    SceneError,
+    example_scenes,
+    load_scene,
+    parse_scene,
+)
 from .simulated_arms import SIMULATED_ARMS, SimulatedArm
 from .trajectory import JointLimits, Trajectory, TrajectoryError
 from .urdf import robot_description
 from .world import World
 
 __all__ = [
+    "GENERATORS",
     "SIMULATED_ARMS",
     "ArmController",
+    "Block",
     "CameraConfig",
     "Frame",
     "JointLimits",
     "LayoutError",
+    "Obstacle",
     "SceneConfig",
+    "SceneError",
     "SimulatedArm",
     "Trajectory",
     "TrajectoryError",
     "World",
     "all_layouts",
     "check_layout",
+    "example_scenes",
     "format_layout",
+    "generate_layout",
+    "load_scene",
     "parse_layout",
+    "parse_scene",
     "random_arrangement",
     "random_layout",
     "robot_description",

@@ -7,18 +7,20 @@ teleports after a reset, and gravity is always on.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pybullet
 from numpy.typing import NDArray
 
-from scene_graph import Stacks
+from scene_graph import Stacks, rotation_from_quaternion
 
-from .bodies import create_block, create_table
+from .bodies import create_block, create_obstacle, create_table
 from .camera import CameraRenderer, Frame
 from .layouts import check_layout
 from .meshes.light_urdf import light_urdf
-from .scene import SceneConfig
-from .simulated_arms import PANDA, SimulatedArm
+from .scene import Block, SceneConfig
+from .simulated_arms import PANDA, SimulatedArm, arm_of_scene
 
 
 class World:
@@ -36,6 +38,7 @@ class World:
 
     Raises:
         OSError: if the arm's meshes cannot be read, or their light copies not be written.
+        SceneError: if the scene's arm cannot rest where it is said to.
     """
 
     def __init__(
@@ -45,7 +48,7 @@ class World:
         arm: SimulatedArm = PANDA,
     ) -> None:
         self.config = config or SceneConfig()
-        self.arm = arm
+        self.arm = arm = arm_of_scene(self.config.arm, arm)
         self.timestep = timestep
         self.client = pybullet.connect(pybullet.DIRECT)
         self.steps = 0
@@ -81,26 +84,36 @@ class World:
         """pybullet's body id of a block."""
         return self._bodies[name]
 
+    def block(self, name: str) -> Block:
+        """What a block is like."""
+        return self._blocks[name]
+
     def reset(self, layout: Stacks, seed: int = 0, settle_time: float = 0.3) -> None:
         """Builds the world anew with a layout and the arm at home, and lets everything settle.
 
         What was before leaves no trace: the same layout, seed and commands give the same physics
-        bit by bit. ``seed`` draws the small offsets with which blocks are put down, and the labels.
+        bit by bit. ``seed`` draws the small offsets with which blocks are put down, the labels,
+        and what the scene leaves open of the blocks.
 
         Raises:
             LayoutError: if the layout is impossible; the world is then as it was.
         """
-        check_layout(layout, self.config.stack_count)
+        config = self.config
+        check_layout(layout, config.stack_count, config.blocks, seed)
         self._build()
         rng = np.random.default_rng(seed)
-        config = self.config
         for stack, base in zip(layout, config.stack_positions):
+            below: list[float] = []
             for level, name in enumerate(stack):
+                block = config.blocks.block(name, seed)
                 offset = rng.uniform(-config.position_jitter, config.position_jitter, 2)
                 yaw = rng.uniform(-config.yaw_jitter, config.yaw_jitter)
-                height = (level + 0.5) * config.block_size + level * 1e-4
+                # Exactly rounded, so that equal blocks stand at the same multiples of their size.
+                height = math.fsum([*below, 0.5 * block.size[2]]) + level * 1e-4
                 position = np.add(base, [*offset, height])
-                self._bodies[name] = create_block(self.client, name, config, position, yaw)
+                self._bodies[name] = create_block(self.client, block, position, yaw)
+                self._blocks[name] = block
+                below.append(block.size[2])
         shuffled = rng.permutation(len(self._bodies)) + 1
         self._labels = {name: int(label) for name, label in zip(self._bodies, shuffled)}
         for _ in range(round(settle_time / self.timestep)):
@@ -147,10 +160,16 @@ class World:
     def block_pose(
         self, name: str
     ) -> tuple[tuple[float, float, float], tuple[float, float, float, float]]:
-        """True position [m] and quaternion (x, y, z, w) of a block in world."""
+        """True position [m] and quaternion (x, y, z, w) of a block in world.
+
+        The position is the middle of its extents, which is not the centre of mass of a prism.
+        """
         position, quaternion = pybullet.getBasePositionAndOrientation(
             self._bodies[name], physicsClientId=self.client
         )
+        if above := self._blocks[name].centre_above_body:
+            up = rotation_from_quaternion(quaternion)[:, 2]
+            position = np.add(position, above * up).tolist()
         return tuple(position), tuple(quaternion)
 
     def push(self, name: str, force_world: tuple[float, float, float]) -> None:
@@ -178,8 +197,12 @@ class World:
         )
         pybullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
         create_table(self.client)
+        for item in self.config.obstacles:
+            if item.lies_still:
+                create_obstacle(self.client, item)
         self._camera = CameraRenderer(self.client, self.config.camera)
         self._bodies: dict[str, int] = {}
+        self._blocks: dict[str, Block] = {}
         self.robot = pybullet.loadURDF(
             self._urdf,
             useFixedBase=True,
@@ -199,6 +222,9 @@ class World:
         self._gains, self._velocity_gains = arm.gains, np.ones(len(joints))
         self._couple_fingers(*(by_name[name][0] for name in arm.finger_joints))
         self._send_home()
+        for item in self.config.obstacles:
+            if not item.lies_still:
+                create_obstacle(self.client, item)
 
     def _send_home(self) -> None:
         home = self.arm.home_positions
