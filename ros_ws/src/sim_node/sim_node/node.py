@@ -49,7 +49,7 @@ _FAREWELL_SECONDS: Final = 0.5
 
 
 class SimNode(Node):
-    """A pybullet world with an arm, blocks and a camera.
+    """A pybullet world with an arm, blocks and cameras, as the parameter ``scene`` says.
 
     Publishes:
         camera/image_raw, camera/depth/image_raw, camera/segmentation (sensor_msgs/Image),
@@ -57,6 +57,7 @@ class SimNode(Node):
             simulated time; the depth is registered, so both infos are the same
         camera/extrinsics (geometry_msgs/TransformStamped), latched; also on tf_static where
             tf2_msgs is installed
+        NAME/… of the same six for each further camera of the scene
         joint_states (sensor_msgs/JointState) and clock (rosgraph_msgs/Clock), at 60 Hz; nodes in a
             namespace hear the clock by the remapping /clock:=clock
         robot_description (std_msgs/String), latched
@@ -85,7 +86,7 @@ class SimNode(Node):
         values = declare_parameters(self, PARAMETERS, self._parameters_changed)
         self._scene = load_scene(values["scene"])
         layout = first_layout(values, self._scene)
-        self._topics = SimTopics(self)
+        self._topics = SimTopics(self, self._scene.cameras)
 
         self._world = World(self._scene, arm=SIMULATED_ARMS[values["robot"]])
         self._arm = ArmController(self._world)

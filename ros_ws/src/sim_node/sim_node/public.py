@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What ``sim_node`` exports; see there."""
 
-from .camera import Frame
 from .controller import ArmController
+from .frame import Frame
 from .generators import GENERATORS, generate_layout
 from .ground_truth import true_scene_graph
 from .layouts import (

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from scene_graph import Stacks, rotation_from_quaternion
 
 from .bodies import create_block, create_obstacle, create_table
-from .camera import CameraRenderer, Frame
+from .camera import CameraRenderer
+from .frame import Frame
 from .layouts import check_layout
 from .meshes.light_urdf import light_urdf
 from .scene import Block, SceneConfig
@@ -184,9 +185,10 @@ class World:
             physicsClientId=self.client,
         )
 
-    def render(self) -> Frame:
-        """What the camera sees now."""
-        return self._camera.render({self._bodies[name]: self._labels[name] for name in self.names})
+    def render(self, camera: int = 0) -> Frame:
+        """What one of the scene's cameras sees now, by its number."""
+        labels = {self._bodies[name]: self._labels[name] for name in self.names}
+        return self._cameras[camera].render(labels)
 
     def _build(self) -> None:
         """Table, camera and arm, and no blocks, in an empty physics server."""
@@ -200,7 +202,9 @@ class World:
         for item in self.config.obstacles:
             if item.lies_still:
                 create_obstacle(self.client, item)
-        self._camera = CameraRenderer(self.client, self.config.camera)
+        self._cameras = tuple(
+            CameraRenderer(self.client, camera, self.config.light) for camera in self.config.cameras
+        )
         self._bodies: dict[str, int] = {}
         self._blocks: dict[str, Block] = {}
         self.robot = pybullet.loadURDF(

@@ -10,6 +10,7 @@ from typing import Annotated, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from .distortion import FoldedPictureError, undistorted
 from .errors import SceneError
 from .reading import Count, Key, Within
 
@@ -118,6 +119,7 @@ def check_cameras(cameras: Sequence[CameraConfig], places_world: Array, key: str
                 f"{here}.position", "is not above the table; its third number, the height, is "
                 "0.02 m or more",
             )  # fmt: skip
+        _check_lens(camera, f"{here}.distortion")
         if not camera.sees(places_world).any():
             raise SceneError(
                 f"{here}.target",
@@ -137,3 +139,18 @@ def _check_name(name: str, others: Sequence[str], key: str) -> None:
         )
     if name == "sim":
         raise SceneError(f"{key}.name", "= 'sim' names the simulator's own topics")
+
+
+def _check_lens(camera: CameraConfig, key: str) -> None:
+    k = camera.intrinsics
+    x, y = np.meshgrid(np.linspace(0, camera.width, 41), np.linspace(0, camera.height, 41))
+    seen = np.column_stack([(x.ravel() - k[0, 2]) / k[0, 0], (y.ravel() - k[1, 2]) / k[1, 1]])
+    try:
+        undistorted(seen, camera.distortion)
+    except FoldedPictureError as error:
+        raise SceneError(
+            key,
+            f"= {list(camera.distortion)} folds the picture, or shrinks its rim to less than a "
+            "quarter or enlarges it more than thrice; take smaller coefficients, or a smaller "
+            "vertical_fov",
+        ) from error
