@@ -110,6 +110,8 @@ def _make_rough(client: int, body: int, shape: str, friction: float) -> None:
         restitution=0.0,
         physicsClientId=client,
     )
+    if shape == PRISM:  # else it hovers by the millimetre that pybullet puts around a mesh
+        pybullet.changeDynamics(body, -1, collisionMargin=0.0, physicsClientId=client)
 
 
 def _collision(client: int, shape: str, size: Vector) -> int:

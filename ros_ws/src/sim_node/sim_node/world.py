@@ -20,7 +20,8 @@ from .camera import CameraRenderer
 from .frame import Frame
 from .layouts import check_layout
 from .meshes.light_urdf import light_urdf
-from .scene import Block, SceneConfig
+from .penetration import check_arm_is_free, check_obstacles_are_free
+from .scene import Block, SceneConfig, SceneError
 from .simulated_arms import PANDA, SimulatedArm, arm_of_scene
 
 
@@ -32,14 +33,15 @@ class World:
         arm: which arm it is; arrays over its n joints are in the order of ``arm.joints``.
         timestep: of the physics [s].
         steps: of the physics since the world was made.
-        client, robot: pybullet's ids of the physics server and of the arm's body.
+        client, robot, table: pybullet's ids of the physics server and of two of its bodies.
+        obstacles: those of what stands around and is no block, by name.
         joint_indices: pybullet's numbers of the arm's joints, n of them.
         lower, upper, max_effort, max_velocity: limits of the joints by the URDF, shape (n,) [rad
             or m; N·m or N; rad/s or m/s].
 
     Raises:
         OSError: if the arm's meshes cannot be read, or their light copies not be written.
-        SceneError: if the scene's arm cannot rest where it is said to.
+        SceneError: if the arm cannot rest where the scene says, or something lies inside of it.
     """
 
     def __init__(
@@ -55,6 +57,7 @@ class World:
         self.steps = 0
         self._urdf = str(light_urdf(arm.urdf))
         self._build()
+        self._check_scene()
 
     def __enter__(self) -> World:
         return self
@@ -198,10 +201,9 @@ class World:
             fixedTimeStep=self.timestep, numSolverIterations=100, physicsClientId=self.client
         )
         pybullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
-        create_table(self.client)
-        for item in self.config.obstacles:
-            if item.lies_still:
-                create_obstacle(self.client, item)
+        self.table = create_table(self.client)
+        self.obstacles: dict[str, int] = {}
+        self._create_obstacles(lie_still=True)
         self._cameras = tuple(
             CameraRenderer(self.client, camera, self.config.light) for camera in self.config.cameras
         )
@@ -226,9 +228,25 @@ class World:
         self._gains, self._velocity_gains = arm.gains, np.ones(len(joints))
         self._couple_fingers(*(by_name[name][0] for name in arm.finger_joints))
         self._send_home()
+        self._create_obstacles(lie_still=False)
+
+    def _create_obstacles(self, lie_still: bool) -> None:
         for item in self.config.obstacles:
-            if not item.lies_still:
-                create_obstacle(self.client, item)
+            if item.lies_still == lie_still:
+                self.obstacles[item.name] = create_obstacle(self.client, item)
+
+    def _check_scene(self) -> None:
+        """Raises SceneError for what only the bodies show of a scene."""
+        home = self.arm.home_positions
+        for name, low, position, high in zip(self.arm.joints, self.lower, home, self.upper):
+            if not low - 1e-6 <= position <= high + 1e-6:
+                raise SceneError(
+                    "arm.home",
+                    f"has {name} at {position:g}; {low:g} to {high:g} are possible",
+                )
+        if self.config.arm.home:
+            check_arm_is_free(self.client, self.robot, self.table)
+        check_obstacles_are_free(self.client, self.config, self.robot, self.obstacles)
 
     def _send_home(self) -> None:
         home = self.arm.home_positions

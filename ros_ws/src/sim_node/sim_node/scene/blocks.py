@@ -172,7 +172,7 @@ def check_blocks(blocks: Blocks, key: str) -> None:
         raise SceneError(
             f"{key}.most",
             f"= {blocks.most} is more than the {possible} names that {len(blocks.colors)} colors "
-            f"and {len(blocks.shapes)} shapes make",
+            f"and {len(blocks.shapes)} shapes make; list more of them",
         )
     for name, own in blocks.named.items():
         try:

@@ -51,7 +51,8 @@ class Within:
             if not self.low <= number <= self.high:
                 span = f"{self.low:g} to {self.high:g} {self.unit}".rstrip()
                 several = f", in {_shown(value)}," if len(set(_leaves(value))) > 1 else ""
-                raise SceneError(key, f"= {number:g}{several} is out of range; {span} are possible")
+                shown = _shown_number(number) + several
+                raise SceneError(key, f"= {shown} is out of range; {span} are possible")
 
 
 @dataclass(frozen=True)
@@ -166,7 +167,10 @@ def _read_plain(kind: Any, data: object, key: str) -> Any:
     if isinstance(data, bool) or not isinstance(data, accepted):
         hint = "; YAML writes 1.0e-3, with a point" if _is_number(data) else ""
         raise SceneError(key, f"= {_shown(data)} is not {_KINDS[kind]}{hint}")
-    value = kind(data)
+    try:
+        value = kind(data)
+    except OverflowError:
+        value = math.inf
     if kind is float and not math.isfinite(value):
         raise SceneError(key, f"= {_shown(data)} is not finite")
     return value
@@ -186,6 +190,10 @@ def _leaves(value: Any) -> Iterator[Any]:
             yield from _leaves(item)
     else:
         yield value
+
+
+def _shown_number(number: float) -> str:
+    return f"{number:g}" if abs(number) < 1e15 else _shown(number)
 
 
 def _shown(data: object) -> str:
