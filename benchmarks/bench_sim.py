@@ -67,7 +67,7 @@ def picture_rows(scenes: int) -> list[Row]:
     for width, height, required in SIZES:
         first, later, theirs = [], [], []
         camera = replace(CameraConfig(), width=width, height=height)
-        with World(SceneConfig(camera=camera)) as world:
+        with World(SceneConfig(cameras=(camera,))) as world:
             for seed in tqdm(range(FIRST_SEED, FIRST_SEED + scenes), f"{width}x{height}"):
                 world.reset(random_layout(seed, 3 + seed % 5), seed)
                 put_arm(world, OVER_THE_STACKS[seed % len(OVER_THE_STACKS)])

@@ -171,7 +171,7 @@ def view_rows(count: int, perception: Perception) -> list[Row]:
     """Accuracy and IoU from other camera views, whose extrinsics are known (Table 5.1)."""
     rows = []
     for degrees, (accuracy, iou) in VIEWS.items():
-        with World(replace(SceneConfig(), camera=turned_camera(degrees))) as world:
+        with World(replace(SceneConfig(), cameras=(turned_camera(degrees),))) as world:
             tally = evaluate(world, 6, count, {"G": perception}, {})["", "G"]
         name, n, right = f"6 objects, camera view +{degrees}°", len(tally.right), sum(tally.right)
         rows += [

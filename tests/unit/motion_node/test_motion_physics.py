@@ -62,7 +62,7 @@ def assert_stacked(world: World, stacks: Stacks) -> None:
     for stack, base in zip(stacks, world.config.stack_positions):
         for level, name in enumerate(stack):
             position, _ = world.block_pose(name)
-            expected = [*base[:2], (level + 0.5) * world.config.block_size]
+            expected = [*base[:2], (level + 0.5) * world.config.blocks.size.low]
             assert position == pytest.approx(expected, abs=0.012), name
 
 

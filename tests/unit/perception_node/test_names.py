@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from perception_node.names import color_names, mean_colors, unique_names
-from scene_graph import COLORS
+from scene_graph import BASIC_COLORS, COLORS
 
-NAMES = tuple(COLORS)
+NAMES = BASIC_COLORS
 
 
 @given(st.permutations(NAMES), st.integers(4, 7), st.floats(0.55, 1.1), st.integers(0, 1000))

@@ -8,6 +8,7 @@ import pytest
 from numpy.random import default_rng
 
 from scene_graph import BOX, COLORS, object_name
+from sim_node.generators import requested_layout
 from sim_node.layouts import (
     LayoutError,
     all_layouts,
@@ -15,8 +16,8 @@ from sim_node.layouts import (
     parse_layout,
     random_arrangement,
     random_layout,
-    requested_layout,
 )
+from sim_node.scene import SceneConfig
 
 
 @pytest.mark.parametrize("blocks", [1, 2, 3, 4, 5])
@@ -67,15 +68,15 @@ def test_a_number_of_blocks_that_does_not_fit_is_refused(blocks: int) -> None:
 @pytest.mark.parametrize("blocks", [0, 1, 2, 8, 65535])
 def test_fault_9_a_random_scene_has_3_to_7_blocks_as_promised(blocks: int) -> None:
     with pytest.raises(LayoutError, match=f"{blocks} blocks asked for; a random scene has 3 to 7"):
-        requested_layout((), 1, blocks, 3)
+        requested_layout(SceneConfig(), (), 1, blocks)
 
 
 @pytest.mark.parametrize("blocks", [3, 7])
 def test_a_random_scene_has_as_many_blocks_as_asked_for(blocks: int) -> None:
-    assert sum(map(len, requested_layout((), 1, blocks, 3))) == blocks
+    assert sum(map(len, requested_layout(SceneConfig(), (), 1, blocks))) == blocks
 
 
 def test_fault_9_an_explicit_layout_may_have_fewer_blocks_but_not_none() -> None:
-    assert requested_layout(["", "red_box", ""], 1, 0, 3) == ((), ("red_box",), ())
+    assert requested_layout(SceneConfig(), ["", "red_box", ""], 1, 0) == ((), ("red_box",), ())
     with pytest.raises(LayoutError, match="0 blocks"):
-        requested_layout(["", "", ""], 1, 5, 3)
+        requested_layout(SceneConfig(), ["", "", ""], 1, 5)

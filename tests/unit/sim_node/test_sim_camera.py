@@ -43,7 +43,7 @@ CAMERAS = [
 @pytest.mark.parametrize("camera", CAMERAS)
 @pytest.mark.parametrize("layout", [LAYOUT, random_layout(5, 7)])
 def test_labels_and_depth_are_what_rays_hit(camera: CameraConfig, layout: tuple) -> None:
-    with World(SceneConfig(camera=camera)) as world:
+    with World(SceneConfig(cameras=(camera,))) as world:
         world.reset(layout, 3)
         without_arm(world)
         frame = world.render()
@@ -94,7 +94,7 @@ def test_the_arm_is_where_pybullet_draws_it(world: World, positions: NDArray[np.
 def test_what_is_behind_the_camera_is_cut_off() -> None:
     """The table reaches behind a camera that stands above it."""
     camera = CameraConfig(position_world=(0.2, 0.0, 0.3), target_world=(0.5, 0.0, 0.05))
-    with World(SceneConfig(camera=camera)) as world:
+    with World(SceneConfig(cameras=(camera,))) as world:
         world.reset(((), ("red_box",), ()))
         without_arm(world)
         frame = world.render()

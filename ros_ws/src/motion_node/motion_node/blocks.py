@@ -38,7 +38,7 @@ class Block(BlockPose):
 
     Attributes:
         name: of the object.
-        shape: ``box``, ``cylinder`` or ``sphere``; it decides how the block can be grasped.
+        shape: one of ``scene_graph.SHAPES``; it decides how the block can be grasped.
     """
 
     name: str

@@ -13,7 +13,7 @@ from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_runtime.messages.scene_graph import graph_to_message
 from visualization_msgs.msg import Marker, MarkerArray
 
-from scene_graph import BOX, COLORS, CYLINDER, SPHERE, SceneGraph, rotation_from_quaternion
+from scene_graph import BOX, COLORS, CYLINDER, PRISM, SPHERE, SceneGraph, rotation_from_quaternion
 
 from .camera import PinholeCamera
 from .errors import BadImageError
@@ -22,7 +22,12 @@ from .pipeline import Perceived
 #: How much longer or shorter than 1 the camera's quaternion may be.
 QUATERNION_TOLERANCE: Final = 2e-4
 
-_MARKER_TYPES: Final = {BOX: Marker.CUBE, CYLINDER: Marker.CYLINDER, SPHERE: Marker.SPHERE}
+_MARKER_TYPES: Final = {
+    BOX: Marker.CUBE,
+    CYLINDER: Marker.CYLINDER,
+    SPHERE: Marker.SPHERE,
+    PRISM: Marker.CUBE,  # RViz has no prism
+}
 
 
 def camera_from_messages(info: CameraInfo, extrinsics: TransformStamped) -> PinholeCamera:

@@ -11,13 +11,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_graph import COLORS, object_name
+from scene_graph import BASIC_COLORS, COLORS, object_name
 
 from .segment import Segments
 
 Array = NDArray[np.float64]
 
-_NAMES: Final = tuple(COLORS)
+_NAMES: Final = BASIC_COLORS
 #: Brightness that a surface may have, relative to the colour's own, in equal ratios.
 _SHADES: Final = np.geomspace(0.3, 1.4, 24)
 #: Cost of a block's shade that differs from the scene's, per squared logarithm [ΔE²].
@@ -32,7 +32,7 @@ class Names:
     """What the N blocks of a scene are called, in the order of their segments.
 
     Attributes:
-        colors: names of ``scene_graph.COLORS``.
+        colors: names of ``scene_graph.BASIC_COLORS``.
         names: unique.
     """
 
@@ -76,7 +76,7 @@ def mean_colors(rgb: NDArray[np.uint8], masks: Sequence[NDArray[np.bool_]]) -> A
 
 
 def color_names(colors: Array) -> tuple[str, ...]:
-    """The nearest name of ``scene_graph.COLORS`` for each colour, in CIE Lab, whatever the light.
+    """The nearest of ``scene_graph.BASIC_COLORS`` for each colour, in CIE Lab, whatever the light.
 
     Light and shade scale a colour, which alone would turn orange into brown. The blocks of a scene
     are lit alike, so one shade is sought that explains all of them best; each may differ from it a

@@ -5,9 +5,12 @@ from .errors import ImpossibleMoveError, InconsistentRelationsError, SceneGraphE
 from .graph import GraphStatus, SceneGraph
 from .moves import Move, all_moves
 from .objects import (
+    BASIC_COLORS,
     BOX,
     COLORS,
     CYLINDER,
+    FLAT_TOPPED,
+    PRISM,
     SHAPES,
     SPHERE,
     SceneObject,
@@ -30,12 +33,15 @@ from .stacks import (
 
 __all__ = [
     "ABOVE",
+    "BASIC_COLORS",
     "BOX",
     "COLORS",
     "CYLINDER",
+    "FLAT_TOPPED",
     "FRONT",
     "LEFT",
     "PREDICATES",
+    "PRISM",
     "ROW_OF_THREE",
     "SHAPES",
     "SPHERE",

@@ -9,7 +9,12 @@ from typing import Final
 BOX: Final = "box"
 CYLINDER: Final = "cylinder"
 SPHERE: Final = "sphere"
-SHAPES: Final = (BOX, CYLINDER, SPHERE)
+#: A triangular prism that lies on one of its three long faces: a roof, its ridge along the second
+#: of its own axes, above the middle of the first.
+PRISM: Final = "prism"
+SHAPES: Final = (BOX, CYLINDER, SPHERE, PRISM)
+#: Shapes with a top that a block can stand on; from a sphere it rolls, from a ridge it slides.
+FLAT_TOPPED: Final = (BOX, CYLINDER)
 
 #: Colours that have a name, as sRGB in 0..1. They are far apart in CIE Lab, so that a rendered or
 #: photographed block is named reliably under changing light.
@@ -23,7 +28,16 @@ COLORS: Final[dict[str, tuple[float, float, float]]] = {
     "cyan": (0.15, 0.80, 0.85),
     "pink": (0.98, 0.55, 0.75),
     "brown": (0.45, 0.25, 0.10),
+    "grey": (0.50, 0.50, 0.50),
+    "black": (0.06, 0.06, 0.06),
+    "magenta": (0.90, 0.10, 0.70),
+    "mint": (0.60, 0.95, 0.75),
+    "lavender": (0.70, 0.60, 1.00),
 }
+
+#: The nine colours of scenes that nobody described otherwise: random scenes and data sets draw
+#: from them, and they are what perception tells apart. The others are for scenes that name them.
+BASIC_COLORS: Final = tuple(COLORS)[:9]
 
 
 def object_name(color: str, shape: str) -> str:

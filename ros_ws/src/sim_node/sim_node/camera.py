@@ -4,57 +4,39 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 import pybullet
 from numpy.typing import NDArray
 
+from .frame import Frame
+from .lens import Lens, Pinhole
 from .rendering.rasteriser import Array, Canvas, Triangles, draw
 from .rendering.surfaces import Surface, surfaces_of
-from .scene import CameraConfig
-
-#: Where the light comes from, in world, and how much of it falls on what faces away, and on what
-#: faces it.
-_LIGHT: Final = np.array([1.2, -0.6, 1.8]) / np.linalg.norm([1.2, -0.6, 1.8])
-_AMBIENT: Final = 0.55
-_DIFFUSE: Final = 0.45
-_SPECULAR: Final = 0.05
-
-
-@dataclass(frozen=True)
-class Frame:
-    """One picture.
-
-    Attributes:
-        rgb: uint8, shape (height, width, 3).
-        depth: float32, shape (height, width), along the optical axis [m]; 0 where nothing is.
-        labels: uint16, shape (height, width), instance labels of the blocks, 0 elsewhere.
-    """
-
-    rgb: NDArray[np.uint8]
-    depth: NDArray[np.float32]
-    labels: NDArray[np.uint16]
+from .scene import CameraConfig, Light
 
 
 class CameraRenderer:
-    """A pinhole camera that looks at the bodies of a physics server.
+    """A camera that looks at the bodies of a physics server.
 
     What never moves is drawn once. The looks of the others are read once.
 
     Args:
         client: physics server; in its world there is nothing yet but what never moves.
         config: the camera.
+        light: what falls on them.
     """
 
-    def __init__(self, client: int, config: CameraConfig) -> None:
+    def __init__(self, client: int, config: CameraConfig, light: Light | None = None) -> None:
         self._client = client
         self._config = config
-        self._intrinsics = config.intrinsics
+        self._light = light or Light()
+        self._lens = Lens(config) if any(config.distortion) else None
+        self._view = self._lens.pinhole if self._lens else Pinhole.of(config)
         self._optical_from_world = np.linalg.inv(config.world_from_optical)
         self._looks: dict[int, tuple[Surface, ...]] = {}
-        self._backdrop = Canvas.empty(config.width, config.height)
+        self._backdrop = Canvas.empty(self._view.width, self._view.height)
         self._still = frozenset(self._bodies())
         self._draw(self._backdrop, self._still, {})
 
@@ -64,15 +46,16 @@ class CameraRenderer:
         self._draw(
             canvas, [body for body in self._bodies() if body not in self._still], labels_by_body
         )
-        shape = (self._config.height, self._config.width)
+        shape = (self._view.height, self._view.width)
         inverse = canvas.inverse_depth
         depth = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
         depth[depth > self._config.far] = 0.0
-        return Frame(
+        frame = Frame(
             canvas.rgb.reshape(*shape, 3),
             depth.reshape(shape).astype(np.float32),
             canvas.labels.reshape(shape),
         )
+        return self._lens.picture(frame) if self._lens else frame
 
     def _bodies(self) -> list[int]:
         count = pybullet.getNumBodies(physicsClientId=self._client)
@@ -92,13 +75,13 @@ class CameraRenderer:
                 points = surface.points @ (turn @ rotation).T + (turn @ position + offset)
                 seen = np.flatnonzero(surface.faces_to((eye - position) @ rotation))
                 marks = np.full(len(seen), labels.get(body, 0), np.uint16)
-                shade = _shade(surface.normals[seen], rotation)
+                shade = _shade(surface.normals[seen], rotation, self._light)
                 faces = surface.faces[seen] + vertices
                 parts.append((points, faces, shade, surface.colors[seen], marks))
                 vertices += len(points)
         if parts:
             triangles = Triangles(*(np.concatenate(part) for part in zip(*parts)))
-            draw(canvas, triangles, self._intrinsics, self._config.near)
+            draw(canvas, triangles, self._view.intrinsics, self._config.near)
 
     def _poses(self, body: int, links: list[int]) -> list[tuple[Array, Array]]:
         """Rotations and positions of links in world [m]."""
@@ -118,14 +101,16 @@ def _rotation(quaternion: tuple[float, ...]) -> Array:
     return np.array(pybullet.getMatrixFromQuaternion(quaternion)).reshape(3, 3)
 
 
-def _shade(normals: Array, rotation: Array) -> Array:
+def _shade(normals: Array, rotation: Array, light: Light) -> Array:
     """How bright a surface is at its corners, shape (f, 3).
 
     Args:
         normals: in the frame of its link, shape (f, 3, 3).
         rotation: of that frame in world, shape (3, 3).
     """
-    directions = np.stack([_LIGHT @ rotation, rotation[2]], axis=1)
+    towards = np.array(light.direction_world) / np.linalg.norm(light.direction_world)
+    directions = np.stack([towards @ rotation, rotation[2]], axis=1)
     facing, upward = (normals.reshape(-1, 3) @ directions).T.reshape(2, -1, 3)
-    mirrored = np.maximum(2.0 * upward * facing - _LIGHT[2], 0.0)
-    return _AMBIENT + _DIFFUSE * np.maximum(facing, 0.0) + _SPECULAR * mirrored**2
+    mirrored = np.maximum(2.0 * upward * facing - towards[2], 0.0)
+    lit = light.ambient + light.diffuse * np.maximum(facing, 0.0)
+    return np.asarray(lit + light.specular * mirrored**2)

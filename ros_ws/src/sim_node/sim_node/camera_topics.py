@@ -3,21 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, Final
 
 from builtin_interfaces.msg import Time
+from geometry_msgs.msg import TransformStamped
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from sensor_msgs.msg import CameraInfo, Image
-from tamp_runtime.qos import NEWEST, SENSOR_DATA
+from tamp_runtime.qos import LATCHED, NEWEST, SENSOR_DATA
 
-from .camera import Frame
-from .conversions import camera_messages
+from .conversions import camera_messages, extrinsics_message
 from .scene import CameraConfig
 from .sensor import Delivery, SensorConfig, is_lost, sense
 from .sensor.config import OFF
 from .sensor.sensor import DELIVERY, stage_random
+from .world import World
 
 #: In the order of :func:`~sim_node.conversions.camera_messages`.
 _TOPICS: Final = (
@@ -36,19 +36,22 @@ class CameraTopics:
     Args:
         node: it gets the publishers.
         sensor: what is wrong with the camera.
-        name: of the camera, with which its topics begin.
-        number: of the camera; each has errors of its own.
+        camera: its topics begin with its name.
+        number: of the camera in the scene; each has errors of its own.
     """
 
     def __init__(
-        self, node: Node, sensor: SensorConfig, name: str = "camera", number: int = 0
+        self, node: Node, sensor: SensorConfig, camera: CameraConfig, number: int = 0
     ) -> None:
         profile = NEWEST if sensor.delivery.reliable else SENSOR_DATA
         self._publishers = {
-            topic: node.create_publisher(kind, f"{name}/{topic}", profile)
+            topic: node.create_publisher(kind, f"{camera.name}/{topic}", profile)
             for topic, kind in _TOPICS
         }
-        self._sensor, self._number = sensor, number
+        self._extrinsics = node.create_publisher(
+            TransformStamped, f"{camera.name}/extrinsics", LATCHED
+        )
+        self._sensor, self._camera, self._number = sensor, camera, number
         self._delivery: Delivery[list[tuple[Publisher, Any]]] = Delivery()
         self.restart(0)
 
@@ -61,14 +64,17 @@ class CameraTopics:
         self._seed, self._count = seed, 0
         self._delivery.clear()
 
-    def take(
-        self, render: Callable[[], Frame], camera: CameraConfig, stamp: Time, now: float
-    ) -> None:
+    def publish_extrinsics(self, stamp: Time) -> TransformStamped:
+        """Publishes where the camera is, and returns it."""
+        transform = extrinsics_message(self._camera, stamp)
+        self._extrinsics.publish(transform)
+        return transform
+
+    def take(self, world: World, stamp: Time) -> None:
         """Takes a picture, if anybody wants it, and sends it on its way.
 
         Args:
-            render: what the camera sees, exactly.
-            now: simulated time [s]; ``stamp`` is the same for subscribers.
+            stamp: for subscribers, the time that it is in the world.
         """
         # Pictures that nobody wants count, so that errors do not depend on who listens when.
         picture = (self._seed, self._number, self._count)
@@ -78,16 +84,16 @@ class CameraTopics:
         config, random = self._sensor.delivery, stage_random(self._sensor, picture, DELIVERY)
         if is_lost(config.lost_pictures, random):
             return
-        frame = sense(render(), self._sensor, picture)
-        messages = camera_messages(frame, camera, stamp, self._sensor.depth.encoding)
+        frame = sense(world.render(self._number), self._sensor, picture)
+        messages = camera_messages(frame, self._camera, stamp, self._sensor.depth.encoding)
         sent = [
             (self._publishers[topic], message)
             for (topic, _), message in zip(_TOPICS, messages)
             if not is_lost(config.lost_messages, random)
             and not (topic == _SEGMENTATION and self._sensor.segmentation.kind == OFF)
         ]
-        self._delivery.send(sent, now, config, random)
-        self.deliver(now)
+        self._delivery.send(sent, world.time, config, random)
+        self.deliver(world.time)
 
     def deliver(self, now: float) -> None:
         """Publishes what has come through by now, in simulated time [s]."""

@@ -14,14 +14,18 @@ from tamp_runtime.messages.images import image_from_array
 from tamp_runtime.messages.stamps import seconds
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from .camera import Frame
+from .frame import Frame
 from .scene import CameraConfig
 from .sensor.config import METRES, MILLIMETRES
 from .sensor.depth import millimetres
 from .trajectory import TrajectoryError
 
 WORLD_FRAME = "world"
-CAMERA_FRAME = "camera_optical_frame"
+
+
+def optical_frame(config: CameraConfig) -> str:
+    """The name of a camera's frame: ``camera_optical_frame`` for the first one."""
+    return f"{config.name}_optical_frame"
 
 
 def camera_messages(
@@ -32,14 +36,14 @@ def camera_messages(
     Args:
         depth_encoding: METRES or MILLIMETRES.
     """
-    header = Header(stamp=stamp, frame_id=CAMERA_FRAME)
+    header = Header(stamp=stamp, frame_id=optical_frame(config))
     k = config.intrinsics
     info = CameraInfo(
         header=header,
         width=config.width,
         height=config.height,
         distortion_model="plumb_bob",
-        d=[0.0] * 5,
+        d=list(config.distortion),
         k=k.ravel().tolist(),
         r=np.eye(3).ravel().tolist(),
         p=np.hstack([k, np.zeros((3, 1))]).ravel().tolist(),
@@ -61,7 +65,7 @@ def extrinsics_message(config: CameraConfig, stamp: Time) -> TransformStamped:
     position = pose[:3, 3].tolist()
     return TransformStamped(
         header=Header(stamp=stamp, frame_id=WORLD_FRAME),
-        child_frame_id=CAMERA_FRAME,
+        child_frame_id=optical_frame(config),
         transform=Transform(
             translation=Vector3(x=position[0], y=position[1], z=position[2]),
             rotation=Quaternion(x=x, y=y, z=z, w=w),

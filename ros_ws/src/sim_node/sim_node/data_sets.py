@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 from tqdm import tqdm
 
-from scene_graph import BOX, COLORS, Stacks, object_name
+from scene_graph import BASIC_COLORS, BOX, Stacks, object_name
 
 from .layouts import all_layouts, random_layout
 from .world import World
@@ -51,7 +51,7 @@ def states_of_colors(blocks: int) -> Iterable[tuple[int, Stacks]]:
     Every state of the blocks' order appears once; which colour is which block rotates through all
     known colours, so that a network trained on them has seen each.
     """
-    colors = list(COLORS)
+    colors = BASIC_COLORS
     places = [str(index) for index in range(blocks)]
     for seed, layout in enumerate(all_layouts(places)):
         turn = {

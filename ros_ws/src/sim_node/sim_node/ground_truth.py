@@ -6,8 +6,11 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
+from numpy.typing import NDArray
 
 from scene_graph import (
+    BOX,
+    FLAT_TOPPED,
     UP,
     Place,
     Relation,
@@ -15,7 +18,7 @@ from scene_graph import (
     SceneObject,
     Stacks,
     base_name,
-    split_object_name,
+    rotation_from_quaternion,
 )
 
 from .world import World
@@ -32,33 +35,40 @@ def true_scene_graph(world: World) -> SceneGraph:
     no relation, so the graph is then no complete state.
     """
     config = world.config
-    objects = []
+    objects, bottoms = [], []
+    tops = [(base_name(i), np.array(base)) for i, base in enumerate(config.stack_positions)]
+    reach: dict[str, float | NDArray[np.float64]] = {
+        base_name(i): _base_reach(config.stack_positions) for i in range(config.stack_count)
+    }
+    turns = {base_name(i): np.eye(3) for i in range(config.stack_count)}
     for name in sorted(world.names):
         position, quaternion = world.block_pose(name)
-        color, shape = split_object_name(name)
+        block = world.block(name)
         objects.append(
             SceneObject(
                 name,
-                color,
-                shape,
+                block.color,
+                block.shape,
                 position,
                 quaternion,
-                (config.block_size,) * 3,
+                block.size,
                 world.label(name),
             )
         )
-    tops = [(base_name(i), np.array(base)) for i, base in enumerate(config.stack_positions)]
-    reach = {base_name(i): _base_reach(config.stack_positions) for i in range(config.stack_count)}
-    for item in objects:
-        tops.append((item.name, np.add(item.position_world, [0.0, 0.0, 0.5 * config.block_size])))
-        reach[item.name] = 0.5 * config.block_size
+        rotation = rotation_from_quaternion(quaternion)
+        vertical = int(np.abs(rotation[2]).argmax())
+        half = 0.5 * np.array(block.size)
+        bottoms.append(np.array(position) - [0.0, 0.0, half[vertical]])
+        if block.shape == BOX or (block.shape in FLAT_TOPPED and vertical == 2):
+            across = [axis for axis in range(3) if axis != vertical]
+            tops.append((name, np.add(position, [0.0, 0.0, half[vertical]])))
+            reach[name], turns[name] = half[across], rotation[:, across].T
     relations = set()
-    for item in objects:
-        bottom = np.array(item.position_world) - [0, 0, 0.5 * config.block_size]
+    for item, bottom in zip(objects, bottoms):
         for below, top in tops:
             offset = bottom - top
             touches = below != item.name and abs(offset[2]) < _HEIGHT_TOLERANCE
-            if touches and np.abs(offset[:2]).max() < reach[below]:
+            if touches and (np.abs(turns[below] @ offset)[:2] < reach[below]).all():
                 relations.add(Relation(item.name, UP, below))
                 break
     places = tuple(Place(i, base) for i, base in enumerate(config.stack_positions))
@@ -81,6 +91,6 @@ def standing_blocks(graph: SceneGraph) -> tuple[Stacks, tuple[str, ...]]:
 
 
 def _base_reach(positions: tuple[tuple[float, float, float], ...]) -> float:
-    """Half the distance of neighbouring places [m]: the share of the table that is a base's."""
-    gaps = [np.linalg.norm(np.subtract(a, b)) for a, b in itertools.pairwise(positions)]
+    """How far from its centre the table is a base's: two fifths of the least distance [m]."""
+    gaps = [np.linalg.norm(np.subtract(a, b)) for a, b in itertools.combinations(positions, 2)]
     return 0.4 * float(min(gaps, default=0.2))

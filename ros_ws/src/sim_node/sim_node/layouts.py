@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Layouts: which blocks start in which stack, random, enumerated or written by hand."""
+"""Layouts: which blocks start in which stack, random, enumerated or written by hand.
+
+Those of other random kinds, for any scene, are in ``generators``.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +12,20 @@ from typing import Final
 
 import numpy as np
 
-from scene_graph import BOX, COLORS, Stacks, object_name, split_object_name
+from scene_graph import (
+    BASIC_COLORS,
+    BOX,
+    FLAT_TOPPED,
+    SPHERE,
+    Stacks,
+    base_name,
+    object_name,
+)
 
-#: How many blocks can be put on the table.
+from .scene import Blocks
+from .scene.table import HIGHEST_STACK
+
+#: How many blocks can be put on the table where no scene says more.
 MIN_BLOCKS: Final = 1
 MAX_BLOCKS: Final = 7
 #: How many a random scene of the simulator has at least: with fewer there is little to plan.
@@ -22,54 +36,60 @@ class LayoutError(ValueError):
     """A layout that cannot be built; the sentence says why."""
 
 
-def check_layout(layout: Stacks, stack_count: int) -> None:
-    """Raises LayoutError for a layout that cannot be put on the table."""
+class TooHighError(LayoutError):
+    """A stack that the arm could not build."""
+
+
+def check_layout(
+    layout: Stacks, stack_count: int, blocks: Blocks | None = None, seed: int = 0
+) -> None:
+    """Raises LayoutError for a layout that cannot be put on the table.
+
+    Args:
+        blocks: what they are like; None: as by default.
+        seed: of the scene: what is left open of the blocks is drawn by it.
+    """
+    blocks = blocks or Blocks()
     if len(layout) != stack_count:
         raise LayoutError(f"the table has {stack_count} stacks, the layout has {len(layout)}")
     names = [name for stack in layout for name in stack]
-    if not MIN_BLOCKS <= len(names) <= MAX_BLOCKS:
+    if not MIN_BLOCKS <= len(names) <= blocks.most:
         raise LayoutError(
-            f"the layout has {len(names)} blocks; {MIN_BLOCKS} to {MAX_BLOCKS} are possible"
+            f"the layout has {len(names)} blocks; {MIN_BLOCKS} to {blocks.most} are possible"
         )
     if repeated := sorted({name for name in names if names.count(name) > 1}):
         raise LayoutError(f"a block can be in one place only: {', '.join(repeated)}")
-    for stack in layout:
-        for name, above in itertools.zip_longest(stack, stack[1:]):
-            try:
-                _, shape = split_object_name(name)
-            except ValueError as error:
-                raise LayoutError(str(error)) from error
-            if shape == "sphere" and above is not None:
-                raise LayoutError(f"{above} cannot stand on {name}: it would roll off")
+    for index, stack in enumerate(layout):
+        _check_stack(stack, base_name(index), blocks, seed)
 
 
-def parse_layout(texts: Sequence[str], stack_count: int) -> Stacks:
+def _check_stack(stack: Sequence[str], place: str, blocks: Blocks, seed: int) -> None:
+    height = 0.0
+    for name, above in itertools.zip_longest(stack, stack[1:]):
+        try:
+            block = blocks.block(name, seed)
+        except ValueError as error:
+            raise LayoutError(str(error)) from error
+        if block.shape not in FLAT_TOPPED and above is not None:
+            way = "roll" if block.shape == SPHERE else "slide"
+            raise LayoutError(f"{above} cannot stand on {name}: it would {way} off")
+        height += block.size[2]
+    if height > HIGHEST_STACK:
+        raise TooHighError(
+            f"the blocks of {place} would stand {height:.2f} m high; the arm stacks up to "
+            f"{HIGHEST_STACK:g} m"
+        )
+
+
+def parse_layout(
+    texts: Sequence[str], stack_count: int, blocks: Blocks | None = None, seed: int = 0
+) -> Stacks:
     """Parses ``["red_box,blue_box", "", "green_box"]``; raises LayoutError."""
     layout = tuple(
         tuple(name.strip() for name in text.split(",")) if text.strip() else () for text in texts
     )
-    check_layout(layout, stack_count)
+    check_layout(layout, stack_count, blocks, seed)
     return layout
-
-
-def requested_layout(texts: Sequence[str], seed: int, blocks: int, stack_count: int) -> Stacks:
-    """The layout that a request for a scene means.
-
-    Args:
-        texts: an explicit layout as :func:`parse_layout` reads it, of 1 to 7 blocks; or empty.
-        seed, blocks: of the random layout where ``texts`` is empty; 3 to 7 blocks.
-
-    Raises:
-        LayoutError: the sentence says what is possible instead.
-    """
-    if texts:
-        return parse_layout(texts, stack_count)
-    if not MIN_RANDOM_BLOCKS <= blocks <= MAX_BLOCKS:
-        raise LayoutError(
-            f"{blocks} blocks asked for; a random scene has {MIN_RANDOM_BLOCKS} to {MAX_BLOCKS}, "
-            f"an explicit layout may have {MIN_BLOCKS} to {MAX_BLOCKS}"
-        )
-    return random_layout(seed, blocks, stack_count)
 
 
 def format_layout(layout: Stacks) -> list[str]:
@@ -86,7 +106,7 @@ def random_layout(seed: int, blocks: int, stack_count: int = 3) -> Stacks:
     if not MIN_BLOCKS <= blocks <= MAX_BLOCKS:
         raise LayoutError(f"{blocks} blocks asked for; {MIN_BLOCKS} to {MAX_BLOCKS} are possible")
     rng = np.random.default_rng(seed)
-    names = [object_name(color, BOX) for color in rng.permutation(list(COLORS))[:blocks]]
+    names = [object_name(color, BOX) for color in rng.permutation(BASIC_COLORS)[:blocks]]
     return random_arrangement(names, rng, stack_count)
 
 

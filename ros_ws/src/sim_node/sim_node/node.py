@@ -25,12 +25,13 @@ from scene_graph import Stacks, format_stacks
 
 from .controller import ArmController
 from .conversions import trajectory_arrays
+from .generators import requested_layout
 from .ground_truth import standing_blocks, true_scene_graph
-from .layouts import LayoutError, format_layout, requested_layout
+from .layouts import LayoutError, format_layout
 from .pacing import Pacer
 from .parameters import PARAMETERS, first_layout
 from .physics_thread import PhysicsError, PhysicsThread
-from .scene import SceneConfig
+from .scene import load_scene
 from .sensor.parameters import sensor_from_parameters
 from .simulated_arms import SIMULATED_ARMS
 from .topics import SimTopics
@@ -49,7 +50,7 @@ _FAREWELL_SECONDS: Final = 0.5
 
 
 class SimNode(Node):
-    """A pybullet world with an arm, blocks and a camera.
+    """A pybullet world with an arm, blocks and cameras, as the parameter ``scene`` says.
 
     Publishes:
         camera/image_raw, camera/depth/image_raw, camera/segmentation (sensor_msgs/Image),
@@ -58,6 +59,7 @@ class SimNode(Node):
             that the parameters sensor.* ask for, by default none
         camera/extrinsics (geometry_msgs/TransformStamped), latched; also on tf_static where
             tf2_msgs is installed
+        NAME/… of the same six for each further camera of the scene
         joint_states (sensor_msgs/JointState) and clock (rosgraph_msgs/Clock), at 60 Hz; nodes in a
             namespace hear the clock by the remapping /clock:=clock
         robot_description (std_msgs/String), latched
@@ -84,12 +86,12 @@ class SimNode(Node):
         self._on_failure = on_failure
         self._failed = False
         values = declare_parameters(self, PARAMETERS, self._parameters_changed)
-        self._config = SceneConfig()
-        layout = first_layout(values, self._config.stack_count)
+        self._scene = load_scene(values["scene"])
+        layout = first_layout(values, self._scene)
         self._values = values
-        self._topics = SimTopics(self, sensor_from_parameters(values))
+        self._topics = SimTopics(self, self._scene.cameras, sensor_from_parameters(values))
 
-        self._world = World(self._config, arm=SIMULATED_ARMS[values["robot"]])
+        self._world = World(self._scene, arm=SIMULATED_ARMS[values["robot"]])
         self._arm = ArmController(self._world)
         self._world.reset(layout, values["seed"])
         self._topics.restart_pictures(values["seed"])
@@ -176,7 +178,7 @@ class SimNode(Node):
     ) -> ResetScene.Response:
         try:
             layout = requested_layout(
-                request.layout, request.seed, request.blocks, self._config.stack_count
+                self._scene, request.layout, request.seed, request.blocks, request.generator
             )
             stamp = self._physics.call(lambda: self._reset(layout, request.seed))
             response.success = True
@@ -215,7 +217,7 @@ class SimNode(Node):
         if self._turns % STATES_PER_FRAME == 0:
             self._truth = true_scene_graph(self._world)
             self._topics.publish_truth(self._truth, stamp)
-            self._topics.publish_picture(self._world, stamp)
+            self._topics.publish_pictures(self._world, stamp)
 
     def _reset(self, layout: Stacks, seed: int) -> Time:
         """Returns the time at which the scene was as it was asked for."""

@@ -10,10 +10,20 @@ from tamp_runtime.parameters import ParameterSpec
 
 from scene_graph import Stacks
 
-from .layouts import MAX_BLOCKS, MIN_RANDOM_BLOCKS, requested_layout
+from .generators import GENERATORS, UNIFORM, requested_layout
+from .layouts import MIN_RANDOM_BLOCKS
+from .scene import SceneConfig
+from .scene.blocks import MOST_BLOCKS
 from .sensor.parameters import SENSOR_PARAMETERS
 from .simulated_arms import PANDA, SIMULATED_ARMS
 from .urdf import BOXES, mesh_uris_problem
+
+
+def _generator_problem(name: str) -> str:
+    """the name of a generator in sim_node.generators"""
+    if not name or name in GENERATORS:
+        return ""
+    return f"generator = {name!r} is not known; known: {', '.join(GENERATORS)}"
 
 
 def _robot_problem(name: str) -> str:
@@ -47,9 +57,25 @@ PARAMETERS: Final = (
     ParameterSpec(
         "blocks",
         5,
-        "blocks in the first scene where it is random; one that is given as layout may have fewer",
+        "blocks in the first scene where it is random, at most as many as the scene allows (7 "
+        "where it says nothing); one that is given as layout may have fewer",
         minimum=MIN_RANDOM_BLOCKS,
-        maximum=MAX_BLOCKS,
+        maximum=MOST_BLOCKS,
+        read_only=True,
+    ),
+    ParameterSpec(
+        "generator",
+        UNIFORM,
+        "what the first scene is like where it is random: "
+        + "; ".join(f"{name}: {item.meaning}" for name, item in GENERATORS.items()),
+        read_only=True,
+        check=_generator_problem,
+    ),
+    ParameterSpec(
+        "scene",
+        "",
+        "what stands where: path of a YAML file, or the name of an example in share/sim_node/scenes"
+        "; empty: three places, boxes of one size, one camera",
         read_only=True,
     ),
     ParameterSpec(
@@ -63,7 +89,7 @@ PARAMETERS: Final = (
 )
 
 
-def first_layout(values: Mapping[str, Any], stack_count: int) -> Stacks:
+def first_layout(values: Mapping[str, Any], scene: SceneConfig) -> Stacks:
     """The layout that the parameters ask for; raises LayoutError if it is impossible."""
     texts = values["layout"] if any(values["layout"]) else ()
-    return requested_layout(texts, values["seed"], values["blocks"], stack_count)
+    return requested_layout(scene, texts, values["seed"], values["blocks"], values["generator"])

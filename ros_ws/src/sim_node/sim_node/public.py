@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What ``sim_node`` exports; see there."""
 
-from .camera import Frame
 from .controller import ArmController
+from .frame import Frame
+from .generators import GENERATORS, generate_layout
 from .ground_truth import true_scene_graph
 from .layouts import (
     LayoutError,
@@ -13,7 +14,16 @@ from .layouts import (
     random_arrangement,
     random_layout,
 )
-from .scene import CameraConfig, SceneConfig
+from .scene import (
+    Block,
+    CameraConfig,
+    Obstacle,
+    SceneConfig,
+    SceneError,
+    example_scenes,
+    load_scene,
+    parse_scene,
+)
 from .sensor import (
     ColorConfig,
     DeliveryConfig,
@@ -28,8 +38,10 @@ from .urdf import robot_description
 from .world import World
 
 __all__ = [
+    "GENERATORS",
     "SIMULATED_ARMS",
     "ArmController",
+    "Block",
     "CameraConfig",
     "ColorConfig",
     "DeliveryConfig",
@@ -37,7 +49,9 @@ __all__ = [
     "Frame",
     "JointLimits",
     "LayoutError",
+    "Obstacle",
     "SceneConfig",
+    "SceneError",
     "SegmentationConfig",
     "SensorConfig",
     "SimulatedArm",
@@ -46,8 +60,12 @@ __all__ = [
     "World",
     "all_layouts",
     "check_layout",
+    "example_scenes",
     "format_layout",
+    "generate_layout",
+    "load_scene",
     "parse_layout",
+    "parse_scene",
     "random_arrangement",
     "random_layout",
     "robot_description",

@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 import pybullet_data
 from numpy.typing import NDArray
+
+from .scene import ArmConfig, SceneError
 
 
 @dataclass(frozen=True)
@@ -86,3 +88,26 @@ PANDA: Final = SimulatedArm(
 
 #: By the name that the parameter ``robot`` takes; an arm is added here.
 SIMULATED_ARMS: Final[Mapping[str, SimulatedArm]] = {model.name: model for model in (PANDA,)}
+
+
+def arm_of_scene(config: ArmConfig, otherwise: SimulatedArm) -> SimulatedArm:
+    """The arm that a scene has.
+
+    Args:
+        otherwise: the one where the scene names none.
+
+    Raises:
+        SceneError: it is not known, or has another number of joints than its home.
+    """
+    if config.robot and config.robot not in SIMULATED_ARMS:
+        known = ", ".join(SIMULATED_ARMS)
+        raise SceneError("arm.robot", f"= {config.robot!r} is unknown; known: {known}")
+    arm = SIMULATED_ARMS[config.robot] if config.robot else otherwise
+    if not config.home:
+        return arm
+    if len(config.home) != len(arm.arm_joints):
+        raise SceneError(
+            "arm.home",
+            f"has {len(config.home)} positions; {arm.name} has {len(arm.arm_joints)} joints",
+        )
+    return replace(arm, home=config.home)

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import TransformStamped
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
@@ -16,7 +17,8 @@ from tamp_runtime.qos import LATCHED, SENSOR_DATA
 from scene_graph import SceneGraph
 
 from .camera_topics import CameraTopics
-from .conversions import WORLD_FRAME, extrinsics_message, joint_state_message
+from .conversions import WORLD_FRAME, joint_state_message
+from .scene import CameraConfig
 from .sensor import SensorConfig
 from .urdf import robot_description
 from .world import World
@@ -27,30 +29,31 @@ class SimTopics:
 
     Args:
         node: it gets the publishers.
-        sensor: what is wrong with its cameras.
+        cameras: of the scene.
+        sensor: what is wrong with them.
     """
 
-    def __init__(self, node: Node, sensor: SensorConfig) -> None:
+    def __init__(self, node: Node, cameras: Sequence[CameraConfig], sensor: SensorConfig) -> None:
         self._node = node
         create = node.create_publisher
-        self._cameras = (CameraTopics(node, sensor),)
-        self._extrinsics = create(TransformStamped, "camera/extrinsics", LATCHED)
+        self._cameras = tuple(
+            CameraTopics(node, sensor, config, number) for number, config in enumerate(cameras)
+        )
         self._joint_states = create(JointState, "joint_states", SENSOR_DATA)
         self._clock = create(Clock, "clock", SENSOR_DATA)
         self._description = create(String, "robot_description", LATCHED)
         self._ground_truth = create(SceneGraphMsg, "sim/ground_truth", LATCHED)
 
     def publish_descriptions(self, world: World, mesh_uris: str, stamp: Time) -> None:
-        """What does not change: where the camera is, and what the arm is like."""
-        extrinsics = extrinsics_message(world.config.camera, stamp)
-        self._extrinsics.publish(extrinsics)
+        """What does not change: where the cameras are, and what the arm is like."""
+        transforms = [camera.publish_extrinsics(stamp) for camera in self._cameras]
         self._description.publish(String(data=robot_description(world.arm, mesh_uris)))
         try:
             from tf2_msgs.msg import TFMessage
         except ImportError:  # not among the PyPI packages
             return
         self._tf_static = self._node.create_publisher(TFMessage, "tf_static", LATCHED)
-        self._tf_static.publish(TFMessage(transforms=[extrinsics]))
+        self._tf_static.publish(TFMessage(transforms=transforms))
 
     def publish_state(self, world: World, stamp: Time) -> None:
         """The time, the arm's joints, and pictures that were on their way until now."""
@@ -66,10 +69,10 @@ class SimTopics:
         header = Header(stamp=stamp, frame_id=WORLD_FRAME)
         self._ground_truth.publish(graph_to_message(truth, header))
 
-    def publish_picture(self, world: World, stamp: Time) -> None:
-        """What the camera sees; drawn only if somebody wants it."""
+    def publish_pictures(self, world: World, stamp: Time) -> None:
+        """What the cameras see; drawn only if somebody wants it."""
         for camera in self._cameras:
-            camera.take(world.render, world.config.camera, stamp, world.time)
+            camera.take(world, stamp)
 
     def configure(self, sensor: SensorConfig) -> None:
         """What is wrong with the cameras from now on."""

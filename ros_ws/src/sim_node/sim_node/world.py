@@ -7,18 +7,22 @@ teleports after a reset, and gravity is always on.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pybullet
 from numpy.typing import NDArray
 
-from scene_graph import Stacks
+from scene_graph import Stacks, rotation_from_quaternion
 
-from .bodies import create_block, create_table
-from .camera import CameraRenderer, Frame
+from .bodies import create_block, create_obstacle, create_table
+from .camera import CameraRenderer
+from .frame import Frame
 from .layouts import check_layout
 from .meshes.light_urdf import light_urdf
-from .scene import SceneConfig
-from .simulated_arms import PANDA, SimulatedArm
+from .penetration import check_arm_is_free, check_obstacles_are_free
+from .scene import Block, SceneConfig, SceneError
+from .simulated_arms import PANDA, SimulatedArm, arm_of_scene
 
 
 class World:
@@ -29,13 +33,15 @@ class World:
         arm: which arm it is; arrays over its n joints are in the order of ``arm.joints``.
         timestep: of the physics [s].
         steps: of the physics since the world was made.
-        client, robot: pybullet's ids of the physics server and of the arm's body.
+        client, robot, table: pybullet's ids of the physics server and of two of its bodies.
+        obstacles: those of what stands around and is no block, by name.
         joint_indices: pybullet's numbers of the arm's joints, n of them.
         lower, upper, max_effort, max_velocity: limits of the joints by the URDF, shape (n,) [rad
             or m; N·m or N; rad/s or m/s].
 
     Raises:
         OSError: if the arm's meshes cannot be read, or their light copies not be written.
+        SceneError: if the arm cannot rest where the scene says, or something lies inside of it.
     """
 
     def __init__(
@@ -45,12 +51,13 @@ class World:
         arm: SimulatedArm = PANDA,
     ) -> None:
         self.config = config or SceneConfig()
-        self.arm = arm
+        self.arm = arm = arm_of_scene(self.config.arm, arm)
         self.timestep = timestep
         self.client = pybullet.connect(pybullet.DIRECT)
         self.steps = 0
         self._urdf = str(light_urdf(arm.urdf))
         self._build()
+        self._check_scene()
 
     def __enter__(self) -> World:
         return self
@@ -81,26 +88,36 @@ class World:
         """pybullet's body id of a block."""
         return self._bodies[name]
 
+    def block(self, name: str) -> Block:
+        """What a block is like."""
+        return self._blocks[name]
+
     def reset(self, layout: Stacks, seed: int = 0, settle_time: float = 0.3) -> None:
         """Builds the world anew with a layout and the arm at home, and lets everything settle.
 
         What was before leaves no trace: the same layout, seed and commands give the same physics
-        bit by bit. ``seed`` draws the small offsets with which blocks are put down, and the labels.
+        bit by bit. ``seed`` draws the small offsets with which blocks are put down, the labels,
+        and what the scene leaves open of the blocks.
 
         Raises:
             LayoutError: if the layout is impossible; the world is then as it was.
         """
-        check_layout(layout, self.config.stack_count)
+        config = self.config
+        check_layout(layout, config.stack_count, config.blocks, seed)
         self._build()
         rng = np.random.default_rng(seed)
-        config = self.config
         for stack, base in zip(layout, config.stack_positions):
+            below: list[float] = []
             for level, name in enumerate(stack):
+                block = config.blocks.block(name, seed)
                 offset = rng.uniform(-config.position_jitter, config.position_jitter, 2)
                 yaw = rng.uniform(-config.yaw_jitter, config.yaw_jitter)
-                height = (level + 0.5) * config.block_size + level * 1e-4
+                # Exactly rounded, so that equal blocks stand at the same multiples of their size.
+                height = math.fsum([*below, 0.5 * block.size[2]]) + level * 1e-4
                 position = np.add(base, [*offset, height])
-                self._bodies[name] = create_block(self.client, name, config, position, yaw)
+                self._bodies[name] = create_block(self.client, block, position, yaw)
+                self._blocks[name] = block
+                below.append(block.size[2])
         shuffled = rng.permutation(len(self._bodies)) + 1
         self._labels = {name: int(label) for name, label in zip(self._bodies, shuffled)}
         for _ in range(round(settle_time / self.timestep)):
@@ -147,10 +164,16 @@ class World:
     def block_pose(
         self, name: str
     ) -> tuple[tuple[float, float, float], tuple[float, float, float, float]]:
-        """True position [m] and quaternion (x, y, z, w) of a block in world."""
+        """True position [m] and quaternion (x, y, z, w) of a block in world.
+
+        The position is the middle of its extents, which is not the centre of mass of a prism.
+        """
         position, quaternion = pybullet.getBasePositionAndOrientation(
             self._bodies[name], physicsClientId=self.client
         )
+        if above := self._blocks[name].centre_above_body:
+            up = rotation_from_quaternion(quaternion)[:, 2]
+            position = np.add(position, above * up).tolist()
         return tuple(position), tuple(quaternion)
 
     def push(self, name: str, force_world: tuple[float, float, float]) -> None:
@@ -165,9 +188,10 @@ class World:
             physicsClientId=self.client,
         )
 
-    def render(self) -> Frame:
-        """What the camera sees now."""
-        return self._camera.render({self._bodies[name]: self._labels[name] for name in self.names})
+    def render(self, camera: int = 0) -> Frame:
+        """What one of the scene's cameras sees now, by its number."""
+        labels = {self._bodies[name]: self._labels[name] for name in self.names}
+        return self._cameras[camera].render(labels)
 
     def _build(self) -> None:
         """Table, camera and arm, and no blocks, in an empty physics server."""
@@ -177,9 +201,14 @@ class World:
             fixedTimeStep=self.timestep, numSolverIterations=100, physicsClientId=self.client
         )
         pybullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
-        create_table(self.client)
-        self._camera = CameraRenderer(self.client, self.config.camera)
+        self.table = create_table(self.client)
+        self.obstacles: dict[str, int] = {}
+        self._create_obstacles(lie_still=True)
+        self._cameras = tuple(
+            CameraRenderer(self.client, camera, self.config.light) for camera in self.config.cameras
+        )
         self._bodies: dict[str, int] = {}
+        self._blocks: dict[str, Block] = {}
         self.robot = pybullet.loadURDF(
             self._urdf,
             useFixedBase=True,
@@ -199,6 +228,25 @@ class World:
         self._gains, self._velocity_gains = arm.gains, np.ones(len(joints))
         self._couple_fingers(*(by_name[name][0] for name in arm.finger_joints))
         self._send_home()
+        self._create_obstacles(lie_still=False)
+
+    def _create_obstacles(self, lie_still: bool) -> None:
+        for item in self.config.obstacles:
+            if item.lies_still == lie_still:
+                self.obstacles[item.name] = create_obstacle(self.client, item)
+
+    def _check_scene(self) -> None:
+        """Raises SceneError for what only the bodies show of a scene."""
+        home = self.arm.home_positions
+        for name, low, position, high in zip(self.arm.joints, self.lower, home, self.upper):
+            if not low - 1e-6 <= position <= high + 1e-6:
+                raise SceneError(
+                    "arm.home",
+                    f"has {name} at {position:g}; {low:g} to {high:g} are possible",
+                )
+        if self.config.arm.home:
+            check_arm_is_free(self.client, self.robot, self.table)
+        check_obstacles_are_free(self.client, self.config, self.robot, self.obstacles)
 
     def _send_home(self) -> None:
         home = self.arm.home_positions

@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from planner_node.goals import parse_goal, resolve_goal
-from scene_graph import BOX, COLORS, Relation, Stacks, object_name, up_relations
+from scene_graph import BASIC_COLORS, BOX, Relation, Stacks, object_name, up_relations
 from sim_node.layouts import MAX_BLOCKS, random_arrangement, random_layout
 
 #: How many blocks the demo's scene has where neither the arguments nor the goal ask for more.
@@ -74,15 +74,15 @@ def scene_for_goal(goal: str, seed: int, blocks: int | None = None) -> tuple[int
     """
     if not goal:
         return seed, blocks or DEFAULT_BLOCKS
-    boxes = [object_name(color, BOX) for color in COLORS]
+    boxes = [object_name(color, BOX) for color in BASIC_COLORS]
     parsed = parse_goal(goal)
     for words in (words for item in parsed for words in (item.subject, item.object)):
-        known = {*COLORS, BOX, "block", "object"}
+        known = {*BASIC_COLORS, BOX, "block", "object"}
         unknown = set(words.text.replace("_", " ").split()) - known
         if words.base is None and unknown:
             raise SceneForGoalError(
                 f"'{words.text}' is in no scene of the demo; it has boxes, of the colours "
-                f"{', '.join(COLORS)}"
+                f"{', '.join(BASIC_COLORS)}"
             )
     named = resolve_goal(parsed, boxes).names
     count = blocks or max(DEFAULT_BLOCKS, len(named))

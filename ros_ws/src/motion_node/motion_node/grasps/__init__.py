@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from typing import Final
 
-from scene_graph import BOX, CYLINDER, SPHERE
+from scene_graph import BOX, CYLINDER, PRISM, SPHERE
 
 from ..blocks import Block
 from ..errors import InvalidPlanError
 from .box import box_grasps
 from .grasp import Circumstances, Grasp, GraspFunction, grasp_height
+from .prism import prism_grasps
 from .round import round_grasps
 
 #: Shape -> ways to take it.
@@ -18,6 +19,7 @@ GRASPS: Final[dict[str, GraspFunction]] = {
     BOX: box_grasps,
     CYLINDER: round_grasps,
     SPHERE: round_grasps,
+    PRISM: prism_grasps,
 }
 
 
@@ -48,5 +50,6 @@ __all__ = [
     "box_grasps",
     "choose_grasp",
     "grasp_height",
+    "prism_grasps",
     "round_grasps",
 ]

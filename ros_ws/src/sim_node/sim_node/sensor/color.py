@@ -11,7 +11,7 @@ import numpy as np
 from .config import ColorConfig
 
 if TYPE_CHECKING:
-    from sim_node.camera import Frame
+    from sim_node.frame import Frame
 
 
 def with_color_errors(frame: Frame, config: ColorConfig, rng: np.random.Generator) -> Frame:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from .depth import depth_edges
 
 if TYPE_CHECKING:
-    from sim_node.camera import Frame
+    from sim_node.frame import Frame
 
 Labels = NDArray[np.uint16]
 

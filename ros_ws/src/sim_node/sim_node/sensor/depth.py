@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from .config import NAN, DepthConfig
 
 if TYPE_CHECKING:
-    from sim_node.camera import Frame
+    from sim_node.frame import Frame
 
 Depth = NDArray[np.float32]
 Mask = NDArray[np.bool_]

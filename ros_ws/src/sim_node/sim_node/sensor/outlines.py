@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 if TYPE_CHECKING:
-    from sim_node.camera import Frame
+    from sim_node.frame import Frame
 
 Labels = NDArray[np.uint16]
 

@@ -17,7 +17,7 @@ from .confusions import merged, missing, phantom, split
 from .outlines import Labels, boundary, dilated, eroded, shifted, speckled
 
 if TYPE_CHECKING:
-    from sim_node.camera import Frame
+    from sim_node.frame import Frame
 
 
 class Error(Protocol):

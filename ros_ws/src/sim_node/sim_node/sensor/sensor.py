@@ -14,7 +14,7 @@ from .depth import with_depth_errors
 from .segmentation import with_label_errors
 
 if TYPE_CHECKING:
-    from sim_node.camera import Frame
+    from sim_node.frame import Frame
 
 # Each stage draws by itself, so that one can be switched on without changing the others.
 _SEGMENTATION: Final = 0
