@@ -12,8 +12,7 @@ import rclpy
 from builtin_interfaces.msg import Time
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
-from std_msgs.msg import Header
-from tamp_interfaces.srv import ResetScene
+from tamp_interfaces.srv import Disturb, ResetScene
 from tamp_runtime.messages.stamps import nanoseconds, stamp_from_nanoseconds
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
@@ -25,6 +24,9 @@ from scene_graph import Stacks, format_stacks
 
 from .controller import ArmController
 from .conversions import trajectory_arrays
+from .disturbance.conversions import request_from_message
+from .disturbance.disturber import Disturber
+from .disturbance.request import DisturbanceError
 from .ground_truth import standing_blocks, true_scene_graph
 from .layouts import LayoutError, format_layout, requested_layout
 from .pacing import Pacer
@@ -67,7 +69,9 @@ class SimNode(Node):
             without points stops the arm
         diagnostics (diagnostic_msgs/DiagnosticArray): of the other nodes
     Services:
-        sim/reset (tamp_interfaces/ResetScene)
+        sim/reset (tamp_interfaces/ResetScene): drops every disturbance that is pending or under way
+        sim/disturb (tamp_interfaces/Disturb): lets something go wrong, now or at an event; what
+            becomes of it stands in the log
 
     One thread of its own owns the physics; callbacks hand it their work through a queue. Should the
     physics fail, the node says so and the process ends with exit code 3.
@@ -88,6 +92,7 @@ class SimNode(Node):
 
         self._world = World(self._config, arm=SIMULATED_ARMS[values["robot"]])
         self._arm = ArmController(self._world)
+        self._disturber = Disturber(self._world, self._arm, self.get_logger().info)
         self._world.reset(layout, values["seed"])
         # The clock starts at the host's time, so that it goes on forward when the node restarts.
         self._start_nanoseconds = time.time_ns()
@@ -136,6 +141,12 @@ class SimNode(Node):
             self._on_reset,
             callback_group=MutuallyExclusiveCallbackGroup(),
         )
+        self.create_service(
+            Disturb,
+            "sim/disturb",
+            self._on_disturb,
+            callback_group=MutuallyExclusiveCallbackGroup(),
+        )
         self._presence = Presence(self, "sim_node")
 
     # Callbacks: they only hand work to the physics thread
@@ -152,7 +163,9 @@ class SimNode(Node):
                     self._arm.stop()
                     return
                 trajectory = self._arm.follow(
-                    message.joint_names, *trajectory_arrays(message), self._step_at(message.header)
+                    message.joint_names,
+                    *trajectory_arrays(message),
+                    self._step_at(message.header.stamp),
                 )
                 self.get_logger().info(
                     f"following a trajectory of {len(message.points)} points, "
@@ -170,9 +183,13 @@ class SimNode(Node):
             layout = requested_layout(
                 request.layout, request.seed, request.blocks, self._config.stack_count
             )
-            stamp = self._physics.call(lambda: self._reset(layout, request.seed))
+            stamp, dropped = self._physics.call(lambda: self._reset(layout, request.seed))
             response.success = True
             response.message = f"the scene is {format_stacks(layout)}"
+            if dropped:
+                response.message += (
+                    f"; disturbances dropped that were pending or going on: {dropped}"
+                )
             response.layout = format_layout(layout)
             response.stamp = stamp
         except LayoutError as error:
@@ -183,6 +200,20 @@ class SimNode(Node):
             self.get_logger().error(f"resetting the scene failed:\n{traceback.format_exc()}")
             sentence = f"resetting the scene failed half-way ({type(error).__name__}: {error})"
             self._refuse(response, f"{sentence}; reset it again, or start sim_node anew")
+        if conflict := self._presence.conflict():
+            response.message += f"; but {conflict}"
+        return response
+
+    def _on_disturb(self, request: Disturb.Request, response: Disturb.Response) -> Disturb.Response:
+        try:
+            wanted = request_from_message(request, self._step_at)
+            promise = self._physics.call(lambda: self._disturber.request(wanted))
+            response.success, response.id = True, promise.number
+            response.message = promise.sentence
+        except DisturbanceError as error:
+            response.message = f"{error}; the world is as it was"
+        except PhysicsError as error:
+            response.message = f"nothing was disturbed: {error}"
         if conflict := self._presence.conflict():
             response.message += f"; but {conflict}"
         return response
@@ -200,6 +231,7 @@ class SimNode(Node):
     def _turn(self) -> None:
         for _ in range(STEPS_PER_STATE):
             self._arm.update()
+            self._disturber.update()
             self._world.step()
         stamp = self._stamp()
         self._topics.publish_state(self._world, stamp)
@@ -209,14 +241,15 @@ class SimNode(Node):
             self._topics.publish_truth(self._truth, stamp)
             self._topics.publish_picture(self._world, stamp)
 
-    def _reset(self, layout: Stacks, seed: int) -> Time:
-        """Returns the time at which the scene was as it was asked for."""
+    def _reset(self, layout: Stacks, seed: int) -> tuple[Time, int]:
+        """The time at which the scene was as asked for, and how many disturbances it ended."""
         self._world.reset(layout, seed)
         self._arm.reset()
+        dropped = self._disturber.reset()
         self._turns = 0  # so that pictures are taken at the same moments every time
         self._truth = true_scene_graph(self._world)
         self._start_pacing()
-        return self._stamp()
+        return self._stamp(), dropped
 
     def _start_pacing(self) -> None:
         self._pacer.change(self._world.time, self._real_time_factor)
@@ -233,9 +266,9 @@ class SimNode(Node):
     def _stamp(self) -> Time:
         return stamp_from_nanoseconds(self._start_nanoseconds + round(self._world.time * 1e9))
 
-    def _step_at(self, header: Header) -> int | None:
+    def _step_at(self, moment: Time) -> int | None:
         """The step of the physics that a stamp means; None for no stamp: now."""
-        stamp = nanoseconds(header.stamp)
+        stamp = nanoseconds(moment)
         if stamp == 0:
             return None
         return round((stamp - self._start_nanoseconds) / 1e9 / self._world.timestep)

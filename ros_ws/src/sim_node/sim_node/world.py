@@ -7,6 +7,8 @@ teleports after a reset, and gravity is always on.
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pybullet
 from numpy.typing import NDArray
@@ -165,6 +167,22 @@ class World:
             physicsClientId=self.client,
         )
 
+    def add_block(self, name: str, position_world: NDArray[np.float64], yaw: float = 0.0) -> None:
+        """Puts one more block down, as :meth:`reset` does; its label is the lowest free one."""
+        self._bodies[name] = create_block(self.client, name, self.config, position_world, yaw)
+        taken = set(self._labels.values())
+        self._labels[name] = next(label for label in itertools.count(1) if label not in taken)
+
+    def remove_block(self, name: str) -> None:
+        """Takes a block away."""
+        del self._labels[name]
+        self.remove_body(self._bodies.pop(name))
+
+    def remove_body(self, body: int) -> None:
+        """Takes a body away; the next one may get its number, so the camera forgets its looks."""
+        pybullet.removeBody(body, physicsClientId=self.client)
+        self._camera.forget(body)
+
     def render(self) -> Frame:
         """What the camera sees now."""
         return self._camera.render({self._bodies[name]: self._labels[name] for name in self.names})
@@ -180,6 +198,7 @@ class World:
         create_table(self.client)
         self._camera = CameraRenderer(self.client, self.config.camera)
         self._bodies: dict[str, int] = {}
+        self._labels = {}
         self.robot = pybullet.loadURDF(
             self._urdf,
             useFixedBase=True,
