@@ -126,6 +126,16 @@ def test_a_reset_drops_what_is_pending_and_under_way(world: World) -> None:
     assert (scene.disturber.pending, scene.disturber.active) == (0, 0)
 
 
+def test_calm_ends_what_is_under_way_as_its_time_would(world: World) -> None:
+    scene = DisturbedWorld(world)
+    before = world.render()
+    scene.disturb("cover", what="sheet")
+    scene.disturb("slip", when="grasp")
+    scene.disturb("calm")
+    np.testing.assert_array_equal(world.render().labels, before.labels)
+    assert (scene.disturber.pending, scene.disturber.active) == (0, 0)
+
+
 def test_one_slip_or_jam_at_a_time(world: World) -> None:
     scene = DisturbedWorld(world)
     scene.disturb("jam", seconds=0.1)

@@ -201,7 +201,7 @@ def test_a_block_that_is_taken_away_is_gone_and_what_stood_on_it_falls(
 
 
 def test_a_block_is_taken_out_of_the_hand(scene: DisturbedWorld) -> None:
-    scene.disturb("take_away", CARRIED, when="in_air", delay=0.1)
+    scene.disturb("take_away", when="in_air", delay=0.1)
     scene.carry_to_the_end()
     assert true_scene_graph(scene.world).stacks() == ((), (), ("green_box", "blue_box"))
 

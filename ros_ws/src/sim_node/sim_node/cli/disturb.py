@@ -15,6 +15,7 @@ from rclpy.utilities import remove_ros_args
 from tamp_interfaces.srv import Disturb
 from tamp_runtime.node_process import prepare_process
 
+from ..disturbance.disturber import CALM
 from ..disturbance.kinds import KINDS
 from ..disturbance.request import EVENTS, NOW, Vector
 from .client import DisturbClient, SimulatorUnavailableError
@@ -40,6 +41,7 @@ examples:
   disturb swap red_box blue_box
   disturb add pink_box --on stack1
   disturb cover --what sheet --delay 3
+  disturb calm                              drops and ends all of them
   disturb shove --acceleration 8 --direction left
 
 exit code: 0 it happens, or waits for its moment; 1 it was refused, or no sim_node answers;
@@ -84,9 +86,9 @@ def _parser() -> argparse.ArgumentParser:
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("kind", choices=list(KINDS), metavar="KIND", help=", ".join(KINDS))
-    parser.add_argument("blocks", nargs="*", metavar="BLOCK", help="such as red_box")
     add = parser.add_argument
+    add("kind", choices=[*KINDS, CALM], metavar="KIND", help=", ".join((*KINDS, CALM)))
+    add("blocks", nargs="*", metavar="BLOCK", help="such as red_box")
     add("--force", type=float, default=0.0, help="push, nudge [N]")
     add("--acceleration", type=float, default=0.0, help="shove [m/s^2]")
     add(

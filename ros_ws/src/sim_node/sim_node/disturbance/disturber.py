@@ -13,8 +13,10 @@ from .disturbance import Disturbance, Stage, check_there
 from .events import EventWatch, describe_moment, watch_of
 from .hand import touched_block
 from .kinds import KINDS
-from .request import EVENTS, DisturbanceError, Request, check_request
+from .request import EVENTS, NOW, DisturbanceError, Request, check_request
 
+#: What is asked for to have everything over.
+CALM: Final = "calm"
 #: How many can wait at a time.
 MOST_PENDING: Final = 100
 
@@ -79,8 +81,11 @@ class Disturber:
         Raises:
             DisturbanceError: it cannot; the world is as it was.
         """
+        if request.kind == CALM:
+            return self._calm(request)
         if request.kind not in KINDS:
-            raise DisturbanceError(f"kind is {request.kind!r}; there are {', '.join(KINDS)}")
+            known = ", ".join((*KINDS, CALM))
+            raise DisturbanceError(f"kind is {request.kind!r}; there are {known}")
         world = self._stage.world
         kind = KINDS[request.kind]
         check_request(request, kind.uses, request.kind)
@@ -126,6 +131,18 @@ class Disturber:
         count = len(self._pending) + len(self._active)
         self._pending, self._active = [], []
         return count
+
+    def _calm(self, request: Request) -> Promise:
+        """Drops what is pending and ends what is under way, without a reset."""
+        check_request(request, (), CALM)
+        if request.when != NOW or request.delay:
+            raise DisturbanceError("calm is for now; it waits for nothing")
+        for item in self._active:
+            item.disturbance.end(self._stage)
+        self._number += 1
+        promise = Promise(self._number, f"disturbances dropped or ended: {self.reset()}")
+        self._tell(promise.sentence)
+        return promise
 
     def _begin_what_is_due(self) -> None:
         world = self._stage.world

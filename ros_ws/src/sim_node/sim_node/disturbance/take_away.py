@@ -3,24 +3,26 @@
 
 from __future__ import annotations
 
-from .disturbance import Disturbance, Stage, check_there, named_blocks
+from .disturbance import Disturbance, Stage, block_in_hand, check_there, named_blocks
 from .request import Request
 
 
 class TakeAway(Disturbance):
-    """A block is gone, also out of the hand; what stood on it falls."""
+    """The named block, that of the event or that in the hand is gone; what stood on it falls."""
 
     uses = frozenset({"blocks"})
 
     def __init__(self, request: Request) -> None:
-        (self._name,) = named_blocks(request, 1, 1)
-        self.sentence = f"{self._name} is taken away"
+        self._name = "".join(named_blocks(request, 0, 1))
+        self.sentence = f"{self._name or 'the block in the hand'} is taken away"
 
     def check(self, stage: Stage) -> None:
-        """It is there."""
-        check_there(stage, self._name)
+        """Of a named block: it is there."""
+        check_there(stage, *([self._name] if self._name else []))
 
     def begin(self, stage: Stage) -> None:
         """Takes it away."""
-        check_there(stage, self._name)
-        stage.world.remove_block(self._name)
+        name = self._name or stage.block or block_in_hand(stage)
+        check_there(stage, name)
+        self.sentence = f"{name} is taken away"
+        stage.world.remove_block(name)
