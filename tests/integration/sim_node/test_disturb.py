@@ -20,6 +20,9 @@ from tamp_runtime.messages.scene_graph import graph_from_message
 from tamp_runtime.messages.stamps import nanoseconds, stamp_from_nanoseconds
 from tamp_runtime.qos import LATCHED, NEWEST
 
+from sim_node.disturbance.disturber import CALM
+from sim_node.disturbance.kinds import KINDS
+from sim_node.disturbance.request import MOMENTS
 from sim_node.node import SimNode
 
 LAYOUT = ["red_box,blue_box", "", "green_box"]
@@ -96,6 +99,12 @@ def test_blocks_come_and_go_and_the_truth_and_the_camera_tell(
         ),
         what="blue_box has fallen",
     )
+
+
+def test_the_interface_names_every_kind_and_moment() -> None:
+    names = [name for name in dir(Disturb.Request) if name.isupper() and name != "SLOT_TYPES"]
+    constants = {str(getattr(Disturb.Request, name)) for name in names}
+    assert constants == {*KINDS, CALM, *MOMENTS}
 
 
 def test_a_cover_is_drawn_for_a_while(ros_context: Any, bench: Bench) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from builtin_interfaces.msg import Time
 from tamp_interfaces.srv import Disturb
 
-from .request import Request
+from .request import NOW, Request
 
 
 def request_from_message(
@@ -26,7 +26,7 @@ def request_from_message(
         on=message.on,
         position=(position.x, position.y, position.z),
         what=message.what,
-        when=message.when or Disturb.Request.NOW,
+        when=message.when or NOW,
         count=message.count,
         of=message.of,
         height=message.height,
