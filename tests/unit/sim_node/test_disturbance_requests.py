@@ -136,7 +136,7 @@ def test_too_many_at_once_are_refused(world: World) -> None:
     scene = DisturbedWorld(world)
     for _ in range(100):
         scene.disturb("jam", delay=9.0)
-    with pytest.raises(DisturbanceError, match="100 disturbances are pending already"):
+    with pytest.raises(DisturbanceError, match="100 disturbances are pending or under way"):
         scene.disturb("jam", delay=9.0)
 
 

@@ -214,6 +214,9 @@ class SimNode(Node):
             response.message = f"{error}; the world is as it was"
         except PhysicsError as error:
             response.message = f"nothing was disturbed: {error}"
+        except Exception as error:  # as in resetting
+            self.get_logger().error(f"a disturbance failed:\n{traceback.format_exc()}")
+            response.message = f"it failed half-way ({type(error).__name__}: {error}); see the log"
         if conflict := self._presence.conflict():
             response.message += f"; but {conflict}"
         return response

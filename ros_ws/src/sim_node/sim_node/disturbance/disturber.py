@@ -17,8 +17,8 @@ from .request import EVENTS, NOW, DisturbanceError, Request, check_request
 
 #: What is asked for to have everything over.
 CALM: Final = "calm"
-#: How many can wait at a time.
-MOST_PENDING: Final = 100
+#: How many can be pending and under way at a time.
+MOST: Final = 100
 
 
 @dataclass(frozen=True)
@@ -96,8 +96,8 @@ class Disturber:
         if request.step is not None and request.step < world.steps:
             late = (world.steps - request.step) * world.timestep
             raise DisturbanceError(f"the time asked for was {late:.3g} s ago")
-        if len(self._pending) >= MOST_PENDING:
-            raise DisturbanceError(f"{MOST_PENDING} disturbances are pending already")
+        if len(self._pending) + len(self._active) >= MOST:
+            raise DisturbanceError(f"{MOST} disturbances are pending or under way already")
         delay = round(request.delay / world.timestep)
         number = self._number + 1
         if request.when not in EVENTS and request.step is None and delay == 0:

@@ -24,7 +24,6 @@ class HoldWatch:
 
     Attributes:
         held: its name, or an empty string.
-        since: how many steps ago that changed, as far as was watched.
     """
 
     def __init__(self, held: str) -> None:

@@ -33,12 +33,14 @@ class Slip(Disturbance):
             )
         self.seconds = request.seconds or DEFAULT_SECONDS
         self._before: dict[int, float] = {}
+        self._anchored = False
         self._describe("the block in the hand")
 
     def begin(self, stage: Stage) -> None:
         """Takes the fingers' friction away."""
         self._describe(block_in_hand(stage))
         world = stage.world
+        self._anchored = "friction_anchor" in world.arm.urdf.read_text(encoding="utf-8")
         for link in finger_links(world):
             info = pybullet.getDynamicsInfo(world.robot, link, physicsClientId=world.client)
             self._before[link] = info[1]
@@ -46,10 +48,8 @@ class Slip(Disturbance):
 
     def end(self, stage: Stage) -> None:
         """Gives it back."""
-        world = stage.world
-        anchored = "friction_anchor" in world.arm.urdf.read_text(encoding="utf-8")
         for link, friction in self._before.items():
-            _set_friction(world, link, friction, anchored)
+            _set_friction(stage.world, link, friction, self._anchored)
 
     def _describe(self, block: str) -> None:
         self.sentence = f"{block} slips: the fingers have no friction for {self.seconds:g} s"
