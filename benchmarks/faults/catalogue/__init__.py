@@ -7,7 +7,7 @@ from typing import Final
 
 from faults.fault import Fault
 
-from . import arm, camera, clients, messages, processes, world
+from . import arm, camera, clients, disturbances, messages, processes, world
 
 CATALOGUE: Final[tuple[Fault, ...]] = (
     *camera.FAULTS,
@@ -16,6 +16,7 @@ CATALOGUE: Final[tuple[Fault, ...]] = (
     *processes.FAULTS,
     *clients.FAULTS,
     *world.FAULTS,
+    *disturbances.FAULTS,
 )
 
 

@@ -22,6 +22,7 @@ setup(
         "console_scripts": [
             "sim_node = sim_node.executable:sim_node",
             "render_dataset = sim_node.executable:render_dataset",
+            "disturb = sim_node.executable:disturb",
         ]
     },
 )

@@ -27,7 +27,7 @@ def reach(world: World, arm: ArmController, seconds: float) -> float:
     worst = 0.0
     for _ in range(round(seconds / world.timestep)):
         arm.update()
-        target = arm._target()[0]
+        target = arm.target()[0]
         world.step()
         worst = max(worst, float(np.abs(world.joint_state()[0] - target)[IS_ARM].max()))
     return worst

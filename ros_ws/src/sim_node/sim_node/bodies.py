@@ -150,3 +150,28 @@ def _tray_parts(size: Vector) -> list[tuple[Vector, Vector]]:
         parts.append(((wall, y, z - wall), (side * (x - wall), 0.0, wall / 2)))
         parts.append(((x - 2 * wall, wall, z - wall), (0.0, side * (y - wall), wall / 2)))
     return parts
+
+
+def couple_fingers(client: int, robot: int, left: int, right: int) -> None:
+    """The real hand drives both fingers with one motor; a gear joint does the same here."""
+    gear = pybullet.createConstraint(
+        robot,
+        left,
+        robot,
+        right,
+        pybullet.JOINT_GEAR,
+        (1, 0, 0),
+        (0, 0, 0),
+        (0, 0, 0),
+        physicsClientId=client,
+    )
+    pybullet.changeConstraint(gear, gearRatio=-1, erp=0.1, maxForce=50, physicsClientId=client)
+    for finger in (left, right):
+        pybullet.changeDynamics(
+            robot,
+            finger,
+            lateralFriction=1.2,
+            spinningFriction=0.01,
+            restitution=0.0,
+            physicsClientId=client,
+        )

@@ -57,6 +57,10 @@ class CameraRenderer:
         )
         return self._lens.picture(frame) if self._lens else frame
 
+    def forget(self, body: int) -> None:
+        """To be told of a body that is taken away: another one may get its number."""
+        self._looks.pop(body, None)
+
     def _bodies(self) -> list[int]:
         count = pybullet.getNumBodies(physicsClientId=self._client)
         return [pybullet.getBodyUniqueId(i, physicsClientId=self._client) for i in range(count)]

@@ -68,12 +68,13 @@ class ArmController:
 
     def update(self) -> None:
         """Commands the motors for the next physics step."""
-        self._world.command(*self._target())
+        self._world.command(*self.target())
         if self._trajectory and self._elapsed > self._trajectory.duration:
             self._hold = self._trajectory.sample(np.inf)[0]
             self._trajectory = None
 
-    def _target(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def target(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Positions and velocities that the motors are told now, shapes (n,)."""
         if self._trajectory is None or self._elapsed < 0.0:
             return self._hold, np.zeros_like(self._hold)
         return self._trajectory.sample(self._elapsed)
@@ -90,4 +91,4 @@ class ArmController:
         positions, _, _ = self._world.joint_state()
         arm = self._world.arm
         is_finger = np.isin(arm.joints, arm.finger_joints)
-        self._hold = np.where(is_finger, self._target()[0], positions)
+        self._hold = np.where(is_finger, self.target()[0], positions)

@@ -12,8 +12,7 @@ import rclpy
 from builtin_interfaces.msg import Time
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
-from std_msgs.msg import Header
-from tamp_interfaces.srv import ResetScene
+from tamp_interfaces.srv import Disturb, ResetScene
 from tamp_runtime.messages.stamps import nanoseconds, stamp_from_nanoseconds
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
@@ -25,6 +24,9 @@ from scene_graph import Stacks, format_stacks
 
 from .controller import ArmController
 from .conversions import trajectory_arrays
+from .disturbance.conversions import request_from_message
+from .disturbance.disturber import Disturber
+from .disturbance.request import DisturbanceError
 from .generators import requested_layout
 from .ground_truth import standing_blocks, true_scene_graph
 from .layouts import LayoutError, format_layout
@@ -71,7 +73,9 @@ class SimNode(Node):
             without points stops the arm
         diagnostics (diagnostic_msgs/DiagnosticArray): of the other nodes
     Services:
-        sim/reset (tamp_interfaces/ResetScene)
+        sim/reset (tamp_interfaces/ResetScene): drops every disturbance that is pending or under way
+        sim/disturb (tamp_interfaces/Disturb): lets something go wrong, now or at an event; what
+            becomes of it stands in the log
 
     One thread of its own owns the physics; callbacks hand it their work through a queue. Should the
     physics fail, the node says so and the process ends with exit code 3.
@@ -83,8 +87,7 @@ class SimNode(Node):
 
     def __init__(self, on_failure: Callable[[], None] | None = None, **kwargs: Any) -> None:
         super().__init__("sim_node", **kwargs)
-        self._on_failure = on_failure
-        self._failed = False
+        self._on_failure, self._failed = on_failure, False
         values = declare_parameters(self, PARAMETERS, self._parameters_changed)
         self._scene = load_scene(values["scene"])
         layout = first_layout(values, self._scene)
@@ -93,6 +96,7 @@ class SimNode(Node):
 
         self._world = World(self._scene, arm=SIMULATED_ARMS[values["robot"]])
         self._arm = ArmController(self._world)
+        self._disturber = Disturber(self._world, self._arm, self.get_logger().info)
         self._world.reset(layout, values["seed"])
         self._topics.restart_pictures(values["seed"])
         # The clock starts at the host's time, so that it goes on forward when the node restarts.
@@ -100,8 +104,7 @@ class SimNode(Node):
         self._topics.publish_descriptions(self._world, values["mesh_uris"], self._stamp())
         self.get_logger().info(f"scene {format_stacks(layout)}")
 
-        self._truth = true_scene_graph(self._world)
-        self._turns = 0
+        self._truth, self._turns = true_scene_graph(self._world), 0
         self._real_time_factor: float = values["real_time_factor"]
         self._pacer = Pacer(self._world.time, self._real_time_factor)
         self._physics = PhysicsThread(
@@ -142,6 +145,12 @@ class SimNode(Node):
             self._on_reset,
             callback_group=MutuallyExclusiveCallbackGroup(),
         )
+        self.create_service(
+            Disturb,
+            "sim/disturb",
+            self._on_disturb,
+            callback_group=MutuallyExclusiveCallbackGroup(),
+        )
         self._presence = Presence(self, "sim_node")
 
     # Callbacks: they only hand work to the physics thread
@@ -162,7 +171,9 @@ class SimNode(Node):
                     self._arm.stop()
                     return
                 trajectory = self._arm.follow(
-                    message.joint_names, *trajectory_arrays(message), self._step_at(message.header)
+                    message.joint_names,
+                    *trajectory_arrays(message),
+                    self._step_at(message.header.stamp),
                 )
                 self.get_logger().info(
                     f"following a trajectory of {len(message.points)} points, "
@@ -180,9 +191,11 @@ class SimNode(Node):
             layout = requested_layout(
                 self._scene, request.layout, request.seed, request.blocks, request.generator
             )
-            stamp = self._physics.call(lambda: self._reset(layout, request.seed))
+            stamp, dropped = self._physics.call(lambda: self._reset(layout, request.seed))
             response.success = True
             response.message = f"the scene is {format_stacks(layout)}"
+            if dropped:
+                response.message += f"; dropped {dropped} disturbances, pending or under way"
             response.layout = format_layout(layout)
             response.stamp = stamp
         except LayoutError as error:
@@ -193,6 +206,23 @@ class SimNode(Node):
             self.get_logger().error(f"resetting the scene failed:\n{traceback.format_exc()}")
             sentence = f"resetting the scene failed half-way ({type(error).__name__}: {error})"
             self._refuse(response, f"{sentence}; reset it again, or start sim_node anew")
+        if conflict := self._presence.conflict():
+            response.message += f"; but {conflict}"
+        return response
+
+    def _on_disturb(self, request: Disturb.Request, response: Disturb.Response) -> Disturb.Response:
+        try:
+            wanted = request_from_message(request, self._step_at)
+            promise = self._physics.call(lambda: self._disturber.request(wanted))
+            response.success, response.id = True, promise.number
+            response.message = promise.sentence
+        except DisturbanceError as error:
+            response.message = f"{error}; the world is as it was"
+        except PhysicsError as error:
+            response.message = f"nothing was disturbed: {error}"
+        except Exception as error:  # as in resetting
+            self.get_logger().error(f"a disturbance failed:\n{traceback.format_exc()}")
+            response.message = f"it failed half-way ({type(error).__name__}: {error}); see the log"
         if conflict := self._presence.conflict():
             response.message += f"; but {conflict}"
         return response
@@ -210,6 +240,7 @@ class SimNode(Node):
     def _turn(self) -> None:
         for _ in range(STEPS_PER_STATE):
             self._arm.update()
+            self._disturber.update()
             self._world.step()
         stamp = self._stamp()
         self._topics.publish_state(self._world, stamp)
@@ -219,15 +250,16 @@ class SimNode(Node):
             self._topics.publish_truth(self._truth, stamp)
             self._topics.publish_pictures(self._world, stamp)
 
-    def _reset(self, layout: Stacks, seed: int) -> Time:
-        """Returns the time at which the scene was as it was asked for."""
+    def _reset(self, layout: Stacks, seed: int) -> tuple[Time, int]:
+        """The time at which the scene was as asked for, and how many disturbances it ended."""
         self._world.reset(layout, seed)
         self._arm.reset()
+        dropped = self._disturber.reset()
         self._turns = 0  # so that pictures are taken at the same moments every time
         self._topics.restart_pictures(seed)
         self._truth = true_scene_graph(self._world)
         self._start_pacing()
-        return self._stamp()
+        return self._stamp(), dropped
 
     def _start_pacing(self) -> None:
         self._pacer.change(self._world.time, self._real_time_factor)
@@ -244,9 +276,9 @@ class SimNode(Node):
     def _stamp(self) -> Time:
         return stamp_from_nanoseconds(self._start_nanoseconds + round(self._world.time * 1e9))
 
-    def _step_at(self, header: Header) -> int | None:
+    def _step_at(self, moment: Time) -> int | None:
         """The step of the physics that a stamp means; None for no stamp: now."""
-        stamp = nanoseconds(header.stamp)
+        stamp = nanoseconds(moment)
         if stamp == 0:
             return None
         return round((stamp - self._start_nanoseconds) / 1e9 / self._world.timestep)

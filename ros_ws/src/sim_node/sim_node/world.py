@@ -7,6 +7,7 @@ teleports after a reset, and gravity is always on.
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from scene_graph import Stacks, rotation_from_quaternion
 
-from .bodies import create_block, create_obstacle, create_table
+from .bodies import couple_fingers, create_block, create_obstacle, create_table
 from .camera import CameraRenderer
 from .frame import Frame
 from .layouts import check_layout
@@ -33,6 +34,7 @@ class World:
         arm: which arm it is; arrays over its n joints are in the order of ``arm.joints``.
         timestep: of the physics [s].
         steps: of the physics since the world was made.
+        seed: of the last reset.
         client, robot, table: pybullet's ids of the physics server and of two of its bodies.
         obstacles: those of what stands around and is no block, by name.
         joint_indices: pybullet's numbers of the arm's joints, n of them.
@@ -54,7 +56,7 @@ class World:
         self.arm = arm = arm_of_scene(self.config.arm, arm)
         self.timestep = timestep
         self.client = pybullet.connect(pybullet.DIRECT)
-        self.steps = 0
+        self.steps = self.seed = 0
         self._urdf = str(light_urdf(arm.urdf))
         self._build()
         self._check_scene()
@@ -119,6 +121,7 @@ class World:
                 self._blocks[name] = block
                 below.append(block.size[2])
         shuffled = rng.permutation(len(self._bodies)) + 1
+        self.seed = seed
         self._labels = {name: int(label) for name, label in zip(self._bodies, shuffled)}
         for _ in range(round(settle_time / self.timestep)):
             self.step()
@@ -188,6 +191,39 @@ class World:
             physicsClientId=self.client,
         )
 
+    def add_block(self, block: Block, position_world: NDArray[np.float64]) -> None:
+        """Puts one more block down, as :meth:`reset` does; its label is the lowest free one."""
+        name = block.name
+        self._bodies[name] = create_block(self.client, block, position_world, 0.0)
+        self._blocks[name] = block
+        taken = set(self._labels.values())
+        self._labels[name] = next(label for label in itertools.count(1) if label not in taken)
+
+    def move_block(
+        self,
+        name: str,
+        position_world: tuple[float, float, float],
+        quaternion: tuple[float, float, float, float],
+    ) -> None:
+        """Puts a block elsewhere, at rest; the pose is as :meth:`block_pose` gives it."""
+        up = rotation_from_quaternion(quaternion)[:, 2]
+        body, below = self._bodies[name], self._blocks[name].centre_above_body * up
+        pybullet.resetBasePositionAndOrientation(
+            body, np.subtract(position_world, below), quaternion, physicsClientId=self.client
+        )
+        pybullet.resetBaseVelocity(body, (0.0,) * 3, (0.0,) * 3, physicsClientId=self.client)
+
+    def remove_block(self, name: str) -> None:
+        """Takes a block away."""
+        del self._labels[name], self._blocks[name]
+        self.remove_body(self._bodies.pop(name))
+
+    def remove_body(self, body: int) -> None:
+        """Takes a body away; the next one may get its number, so the cameras forget its looks."""
+        pybullet.removeBody(body, physicsClientId=self.client)
+        for camera in self._cameras:
+            camera.forget(body)
+
     def render(self, camera: int = 0) -> Frame:
         """What one of the scene's cameras sees now, by its number."""
         labels = {self._bodies[name]: self._labels[name] for name in self.names}
@@ -209,6 +245,7 @@ class World:
         )
         self._bodies: dict[str, int] = {}
         self._blocks: dict[str, Block] = {}
+        self._labels: dict[str, int] = {}
         self.robot = pybullet.loadURDF(
             self._urdf,
             useFixedBase=True,
@@ -226,7 +263,7 @@ class World:
             np.array([info[column] for info in joints]) for column in range(8, 12)
         )
         self._gains, self._velocity_gains = arm.gains, np.ones(len(joints))
-        self._couple_fingers(*(by_name[name][0] for name in arm.finger_joints))
+        couple_fingers(self.client, self.robot, *(by_name[name][0] for name in arm.finger_joints))
         self._send_home()
         self._create_obstacles(lie_still=False)
 
@@ -253,29 +290,3 @@ class World:
         for index, position in zip(self.joint_indices, home):
             pybullet.resetJointState(self.robot, index, position, 0.0, physicsClientId=self.client)
         self.command(home)
-
-    def _couple_fingers(self, left: int, right: int) -> None:
-        """The real hand drives both fingers with one motor; a gear joint does the same here."""
-        gear = pybullet.createConstraint(
-            self.robot,
-            left,
-            self.robot,
-            right,
-            pybullet.JOINT_GEAR,
-            (1, 0, 0),
-            (0, 0, 0),
-            (0, 0, 0),
-            physicsClientId=self.client,
-        )
-        pybullet.changeConstraint(
-            gear, gearRatio=-1, erp=0.1, maxForce=50, physicsClientId=self.client
-        )
-        for finger in (left, right):
-            pybullet.changeDynamics(
-                self.robot,
-                finger,
-                lateralFriction=1.2,
-                spinningFriction=0.01,
-                restitution=0.0,
-                physicsClientId=self.client,
-            )
