@@ -137,7 +137,7 @@ def test_a_reset_drops_what_is_pending(bench: Bench) -> None:
     assert bench.ask(Disturb.Request.SLIP, when=Disturb.Request.GRASP).success
     assert bench.ask(Disturb.Request.JAM, delay=3000.0).success
     answer = bench.reset(layout=LAYOUT)
-    assert answer.message.endswith("disturbances dropped that were pending or going on: 2")
+    assert answer.message.endswith("dropped 2 disturbances, pending or under way")
     assert "dropped" not in bench.reset(layout=LAYOUT).message
 
 
