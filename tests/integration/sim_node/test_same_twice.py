@@ -16,7 +16,7 @@ from rclpy.parameter import Parameter
 from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import ResetScene
 from tamp_runtime.messages.stamps import nanoseconds, stamp_from_nanoseconds
-from tamp_runtime.qos import LATCHED, RELIABLE
+from tamp_runtime.qos import RELIABLE, STATUS
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from sim_node.node import SimNode
@@ -25,6 +25,8 @@ from sim_node.simulated_arms import PANDA
 LAYOUT = ["red_box,blue_box", "green_box,yellow_box,purple_box", ""]
 #: From home into the tower in the middle.
 DOWN = np.array([0.0, 0.37, 0.0, -2.39, 0.0, 2.76, 0.79, 0.04, 0.04])
+#: Latched, and deep enough that a busy machine loses none.
+EVERY_TRUTH = STATUS
 #: After the reset: when the arm sets out, and when all lies still [s].
 BEGINS, ENDS = 4.0, 8.0
 
@@ -65,7 +67,7 @@ def final_poses(ros_context: Any, name: str, factor: float) -> dict[str, tuple[f
     )
     node = Node("watcher", context=context, namespace=name)
     truths: list[SceneGraph] = []
-    node.create_subscription(SceneGraph, "sim/ground_truth", truths.append, LATCHED)
+    node.create_subscription(SceneGraph, "sim/ground_truth", truths.append, EVERY_TRUTH)
     arm = node.create_publisher(JointTrajectory, "joint_trajectory", RELIABLE)
     reset = node.create_client(ResetScene, "sim/reset")
     ros_context.add(node)

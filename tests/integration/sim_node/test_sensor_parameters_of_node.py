@@ -106,14 +106,19 @@ def test_the_same_reset_gives_the_same_pictures(ros_context: Any, listener: List
             if stamp > start
         }
 
-    first, second = after_reset(), after_reset()
-    # Best effort: some may be lost; times are rounded to nanoseconds.
-    pairs = [
-        (first[time], second[other])
-        for time in first
-        for other in second
-        if abs(time - other) < 1000
-    ]
+    first = after_reset()
+    pairs: list[tuple[Any, Any]] = []
+    # Best effort: on a busy machine some are lost, each time others.
+    for _ in range(20):
+        second = after_reset()
+        pairs += [
+            (first[time], second[other])
+            for time in first
+            for other in second
+            if abs(time - other) < 1000  # times are rounded to nanoseconds
+        ]
+        if len(pairs) >= 3:
+            break
     assert len(pairs) >= 3
     assert all(one == other for one, other in pairs)
     assert len({pictures[1] for pictures in first.values()}) == len(first), "noise that repeats"

@@ -66,7 +66,7 @@ BAD: list[tuple[tuple[str, ...], dict[str, Any], str]] = [
     (("add", "pink_box"), {"on": "stack7"}, "no place stack7; there are stack0 to stack2"),
     (("add", "pink_box"), {"on": "stack0"}, "cannot stand there: red_box is there"),
     (("add", "pink_box"), {"on": "green_box"}, "cannot stand there: blue_box is there"),
-    (("add", "pink_box"), {"on": "yellow_sphere"}, "would roll off"),
+    (("add", "pink_box"), {"on": "yellow_sphere"}, "would come off"),
     (("add", "pink_box"), {"position": (0.5, 0.1, 0.2)}, "would be in the air"),
     (("add", "pink_box"), {"position": (3.0, 0.0, 0.0)}, "would be in the air"),
     (("add", "pink_box"), {"position": (0.5, -0.13, 0.0)}, "cannot stand there: red_box"),
