@@ -8,6 +8,7 @@ import pybullet
 from scene_graph import SPHERE, UP
 
 from ..ground_truth import true_scene_graph
+from ..world import World
 from .disturbance import Disturbance, Stage, check_there, named_blocks
 from .free_space import in_the_way, reach
 from .hand import touched_block
@@ -52,8 +53,7 @@ class Swap(Disturbance):
                  if item.predicate == UP and item.object == other]  # fmt: skip
         if above and name.endswith(SPHERE):
             raise DisturbanceError(f"{above[0]} cannot stand on {name}: it would roll off")
-        (x, y, _), _ = world.block_pose(other)
-        (_, _, z), _ = world.block_pose(name)
+        (x, y, _), (_, _, z) = _origin(world, other), _origin(world, name)
         bottom, _ = reach(world, name)
         centre = (x, y, reach(world, other)[0] + z - bottom)
         if graph.object(name).size != graph.object(other).size and (
@@ -61,3 +61,11 @@ class Swap(Disturbance):
         ):
             raise DisturbanceError(f"{name} does not fit where {other} is: {thing} is in the way")
         return centre
+
+
+def _origin(world: World, name: str) -> Vector:
+    """Where pybullet has the body of a block, which need not be its middle [m]."""
+    x, y, z = pybullet.getBasePositionAndOrientation(
+        world.body(name), physicsClientId=world.client
+    )[0]
+    return x, y, z
