@@ -3,11 +3,20 @@
 
 from __future__ import annotations
 
+from typing import Final
+
+import numpy as np
+
 from faults.askers import Answer
 from faults.fault import Ending, Fault, names_the_cause
 from planner_node.goals import parse_goal, resolve_goal
-from scene_graph import SceneGraph
+from scene_graph import UP, SceneGraph, base_name
 from tamp_bringup.scene_observer import true_stacks
+
+#: How far a block may be beside the middle of its place, and of the block beneath, so that nobody
+#: would call the scene untidy [m].
+_BESIDE_PLACE: Final = 0.035
+_BESIDE_BLOCK: Final = 0.015
 
 
 def ending_of(
@@ -60,4 +69,22 @@ def arm_untruth(answer: Answer, truth: SceneGraph | None, moves: bool) -> str:
         for relation in truth.relations:
             if relation.subject == answer.held and relation.predicate == "up":
                 return f"the answer says that {answer.held} is held; it is on {relation.object}"
+    return ""
+
+
+def untidy(truth: SceneGraph) -> str:
+    """The block that stands beside what it stands on, in words; empty if each is where it should.
+
+    By the truth, a block is on a place as long as no other place is nearer.
+    """
+    places = {base_name(place.index): place.position_world for place in truth.places}
+    blocks = {item.name: item.position_world for item in truth.objects}
+    for relation in sorted(truth.relations):
+        if relation.predicate != UP:
+            continue
+        on_place = relation.object in places
+        below = places[relation.object] if on_place else blocks[relation.object]
+        offset = float(np.hypot(*np.subtract(blocks[relation.subject], below)[:2]))
+        if offset > (_BESIDE_PLACE if on_place else _BESIDE_BLOCK):
+            return f"{relation.subject} stands {1000 * offset:.0f} mm beside {relation.object}"
     return ""

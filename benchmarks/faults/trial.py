@@ -12,7 +12,7 @@ import numpy as np
 from faults.askers import Answer, CommandAsker, ProgramAsker
 from faults.fault import Ending, Fault, Phase
 from faults.injections import PATIENCE, CrowdHungError
-from faults.judge import arm_untruth, ending_of
+from faults.judge import arm_untruth, ending_of, untidy
 from faults.setting import Setting
 from faults.small_tasks import first_layout, some_moves_away
 from tamp_bringup.processes import NODES, NodeDiedError
@@ -226,9 +226,12 @@ def _plain_task(setting: Setting, seed: int) -> tuple[str, bool]:
     if stacks is None:
         # A block may just be on its way down.
         time.sleep(1.0)
-        stacks = true_stacks(setting.eyes.fresh_truth())
+        truth = setting.eyes.fresh_truth()
+        stacks = true_stacks(truth)
     if not stacks:
         return "a block stands on nothing", False
+    if messy := untidy(truth):
+        return messy, False
     goal = some_moves_away(stacks, 1, seed)
     asker = ProgramAsker(setting.planner, PATIENCE)
     deadline = time.monotonic() + PATIENCE + ANSWER_SECONDS

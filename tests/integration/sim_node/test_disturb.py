@@ -201,6 +201,9 @@ def test_the_command_says_what_comes_and_why_not(ros_context: Any, start: Start)
     code, _, stderr = finish(start("sim_node", "disturb", "take_away", "teapot"))
     assert code == 1
     assert "there is no block 'teapot'; there are blue_box, green_box, red_box" in stderr
+    code, _, stderr = finish(start("sim_node", "disturb", "explode"))
+    assert code == 1
+    assert stderr.startswith("disturb: kind is 'explode'; there are push, swap, take_away, add")
     assert bench.sim._disturber.pending == 1
 
 
@@ -208,7 +211,8 @@ def test_the_command_says_what_comes_and_why_not(ros_context: Any, start: Start)
     ("arguments", "code", "sentence"),
     [
         (["--help"], 0, "disturb push red_box"),
-        (["explode"], 2, "invalid choice: 'explode'"),
+        (["push", "--force", "2", "red_box", "--timeout", "1"], 1, "sim_node does not answer"),
+        ([], 2, "required: KIND"),
         (["push", "red_box", "--direction", "sideways"], 2, "'sideways' is no direction"),
         (["push", "red_box", "--force", "hard"], 2, "invalid float value: 'hard'"),
         (["add", "pink_box", "--position", "1,2"], 2, "'1,2' is not X,Y,Z"),

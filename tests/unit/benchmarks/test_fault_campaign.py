@@ -13,7 +13,7 @@ from faults.askers import Answer
 from faults.catalogue import CATALOGUE, UnknownFaultError, faults_named
 from faults.fault import Ending, Fault, Phase, names_the_cause
 from faults.injections import Cancelled
-from faults.judge import arm_untruth, ending_of, holds
+from faults.judge import arm_untruth, ending_of, holds, untidy
 from faults.numbered import NUMBERED, numbered_table
 from faults.numbered import tests_that_name as by_number
 from faults.report import command_of, dictionary, make_rows, problems
@@ -163,6 +163,24 @@ def test_an_arm_that_rests_does_not_move_and_a_held_block_stands_nowhere() -> No
     assert "blue_box" in arm_untruth(resting, truth(RED_ON_BLUE), moves=False)
     assert not arm_untruth(resting, truth((("blue_box",), (), ())), moves=False)
     assert not arm_untruth(Answer("X", "…", arm="moving"), None, moves=True)
+
+
+def test_a_scene_is_tidy_while_blocks_stand_in_the_middle_of_what_is_beneath_them() -> None:
+    def scene(red: tuple[float, float, float], blue: tuple[float, float, float]) -> SceneGraph:
+        objects = (
+            SceneObject("red_box", "red", "box", red),
+            SceneObject("blue_box", "blue", "box", blue),
+        )
+        return SceneGraph(objects, up_relations(RED_ON_BLUE), (Place(0, (0.5, 0.0, 0.0)),))
+
+    assert untidy(scene((0.5, 0.01, 0.07), (0.51, 0.01, 0.02))) == ""
+    assert (
+        untidy(scene((0.54, 0.03, 0.07), (0.54, 0.03, 0.02)))
+        == "blue_box stands 50 mm beside stack0"
+    )
+    assert (
+        untidy(scene((0.52, 0.0, 0.07), (0.5, 0.0, 0.02))) == "red_box stands 20 mm beside blue_box"
+    )
 
 
 # The report

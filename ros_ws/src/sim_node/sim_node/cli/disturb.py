@@ -15,11 +15,18 @@ from rclpy.utilities import remove_ros_args
 from tamp_interfaces.srv import Disturb
 from tamp_runtime.node_process import prepare_process
 
-from ..disturbance.disturber import CALM
-from ..disturbance.kinds import KINDS
-from ..disturbance.request import EVENTS, NOW, Vector
+from ..disturbance.request import EVENTS, MOMENTS, NOW, Vector
 from .client import DisturbClient, SimulatorUnavailableError
 
+#: The kinds that the interface names. The simulator may know more, and is asked for any; to import
+#: them from there would bring the physics engine along.
+KINDS: Final = tuple(
+    str(getattr(Disturb.Request, name))
+    for name in dir(Disturb.Request)
+    if name.isupper()
+    and name != "SLOT_TYPES"
+    and str(getattr(Disturb.Request, name)) not in MOMENTS
+)
 EXIT_REFUSED: Final = 1
 EXIT_INTERRUPTED: Final = 130
 #: As in the camera's picture.
@@ -53,7 +60,7 @@ def disturb(arguments: Sequence[str] | None = None) -> int:
     """Asks for a disturbance and prints what comes of it."""
     arguments = sys.argv if arguments is None else arguments
     parser = _parser()
-    options = parser.parse_args(remove_ros_args(arguments)[1:])
+    options = parser.parse_intermixed_args(remove_ros_args(arguments)[1:])
     if not options.timeout > 0.0:
         parser.error(f"--timeout {options.timeout:g}: must be positive")
     if not 0 <= options.count < 2**32:
@@ -87,7 +94,7 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = parser.add_argument
-    add("kind", choices=[*KINDS, CALM], metavar="KIND", help=", ".join((*KINDS, CALM)))
+    add("kind", metavar="KIND", help=", ".join(KINDS))
     add("blocks", nargs="*", metavar="BLOCK", help="such as red_box")
     add("--force", type=float, default=0.0, help="push, nudge [N]")
     add("--acceleration", type=float, default=0.0, help="shove [m/s^2]")
@@ -96,7 +103,8 @@ def _parser() -> argparse.ArgumentParser:
         type=_direction,
         default=(0.0,) * 3,
         metavar="WORD|X,Y,Z",
-        help=f"push, shove, nudge: {', '.join(DIRECTIONS)} as in the picture, or in world",
+        help=f"push, shove, nudge: {', '.join(DIRECTIONS)} as in the picture, or "
+        "in world; with a minus in front as --direction=-1,0,0",
     )
     add("--seconds", type=float, default=0.0, help="for how long, in simulated time")
     add("--on", default="", help="add: a block, or a place such as stack0")

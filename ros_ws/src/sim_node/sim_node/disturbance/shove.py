@@ -43,6 +43,10 @@ class Shove(Disturbance):
         self._done += 1
         felt = sign * self._acceleration * np.array(self._direction)
         for name in world.names:
-            mass = pybullet.getDynamicsInfo(world.body(name), -1, physicsClientId=world.client)[0]
-            x, y, z = mass * felt
-            world.push(name, (float(x), float(y), float(z)))
+            body, client = world.body(name), world.client
+            mass = pybullet.getDynamicsInfo(body, -1, physicsClientId=client)[0]
+            # Where pybullet has a body is its centre of mass.
+            centre, _ = pybullet.getBasePositionAndOrientation(body, physicsClientId=client)
+            pybullet.applyExternalForce(
+                body, -1, mass * felt, centre, pybullet.WORLD_FRAME, physicsClientId=client
+            )
