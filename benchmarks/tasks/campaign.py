@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import sys
 import time
 import traceback
 from collections import defaultdict
@@ -90,14 +91,14 @@ class Campaign:
             for seed in left:
                 progress.set_postfix_str(progress_text(*tally.count(counted)))
                 self._run_one(self._draw(seed))
+                progress.set_postfix_str(progress_text(*tally.count(counted)), refresh=False)
                 progress.update()
                 content = records.read(seed)
                 if failure := content["failure"]:
                     command = command_of(settings.family, seed, settings.real_time_factor)
-                    tqdm.write(f"seed {seed}: failed in {failure['module']}: {failure['reason']}")
-                    tqdm.write(f"    again: {command}    kept: {records.kept(seed)}")
+                    _say(f"seed {seed}: failed in {failure['module']}: {failure['reason']}")
+                    _say(f"    again: {command}    kept: {records.kept(seed)}")
                 self._stop.check()
-            progress.set_postfix_str(progress_text(*tally.count(counted)))
 
     def _run_one(self, task: Task) -> None:
         if not self._has_own_graph(task) and self._shared is None:
@@ -254,6 +255,11 @@ def _answer(graph: Graph) -> Mapping[str, Any] | None:
     with suppress(PlannerUnavailableError, TimeoutError, RuntimeError):
         return vars(answer_from_result(graph.planner.result(timeout=0.5)))
     return None
+
+
+def _say(sentence: str) -> None:
+    """Above the progress bar, at once."""
+    tqdm.write(sentence, file=sys.stderr)
 
 
 def _failed(module: str, reason: str) -> Result:

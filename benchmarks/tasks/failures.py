@@ -80,7 +80,8 @@ def sentence_class(sentence: str) -> str:
     """
     text = sentence.strip()
     text = _PATH.sub("PATH", text)
-    text = _PARENTHESES.sub("", text)
+    while (without := _PARENTHESES.sub("", text)) != text:  # from the innermost ones on
+        text = without
     text = _NAME.sub("BLOCK", text)
     text = _BASE.sub("PLACE", text)
     text = _NUMBER.sub("N", text)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ctrl-C: the first lets the task that runs come to its end, the second interrupts it."""
+"""Ctrl-C: the first lets the task that runs come to its end, a second one interrupts it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ class Stop:
 
     Between tasks, and while a graph starts, they stop at once with KeyboardInterrupt: nothing is
     under way. While a task runs, the first one waits for its end, so that stopping costs no task;
-    a second one raises KeyboardInterrupt, and the task counts as interrupted.
+    another SIGINT raises KeyboardInterrupt, and the task counts as interrupted. Another SIGTERM
+    says nothing new: the kernel may send several to the shares of a process that was killed, one
+    for each of its threads.
 
     Attributes:
         asked: whether somebody wants the campaign to stop.
@@ -48,8 +50,10 @@ class Stop:
         if self.asked:
             raise KeyboardInterrupt
 
-    def _on_signal(self, _number: int, _frame: FrameType | None) -> None:
+    def _on_signal(self, number: int, _frame: FrameType | None) -> None:
         first, self.asked = not self.asked, True
+        if not first and number == signal.SIGTERM:
+            return
         if not (first and self._running):
             raise KeyboardInterrupt
         print(
