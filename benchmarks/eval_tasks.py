@@ -18,6 +18,7 @@ import sys
 import time
 from collections.abc import Sequence
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
 
@@ -93,6 +94,8 @@ def check_parameters(task: Task) -> None:
             f"the family {task.family} needs parameters that the nodes of this checkout do not "
             f"have: {', '.join(unknown)}"
         )
+    if task.disturbance and find_spec("sim_node.cli") is None:
+        raise OtherTasksError(f"the family {task.family} needs sim/disturb, which is not there")
 
 
 def run_in_turns(

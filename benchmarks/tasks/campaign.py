@@ -207,6 +207,8 @@ def measure(graph: Graph, task: Task) -> Result:
     begun = time.monotonic()
     initial = observer.reset(task.seed, layout=task.layout, timeout=START_SECONDS)
     observer.graph_times.clear()
+    if task.disturbance:
+        disturb(task.disturbance)
     wall, simulated = time.monotonic(), observer.simulated_seconds
     result = run_task(
         graph.planner, observer, initial, task.goal, check_alive=graph.processes.check
@@ -222,6 +224,21 @@ def measure(graph: Graph, task: Task) -> Result:
         "truth_after": poses(observer.truth),
         "answer": _answer(graph),
     }
+
+
+def disturb(request: Mapping[str, Any]) -> None:
+    """Asks the simulator to let something go wrong; raises SimulationError if it refuses."""
+    from tamp_interfaces.srv import Disturb
+
+    from sim_node.cli.client import DisturbClient, SimulatorUnavailableError
+
+    with DisturbClient() as simulator:
+        try:
+            answer = simulator.disturb(Disturb.Request(**request), timeout=START_SECONDS)
+        except SimulatorUnavailableError as error:
+            raise SimulationError(str(error)) from error
+    if not answer.success:
+        raise SimulationError(f"the disturbance was refused: {answer.message}")
 
 
 def frames_of(observer: SceneObserver) -> dict[str, Any]:

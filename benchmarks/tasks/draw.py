@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Final
 
 import numpy as np
 
-from scene_graph import COLORS, Stacks, object_name
+from scene_graph import Stacks, object_name
 from sim_node.layouts import random_arrangement, random_layout
 from tamp_bringup.task import goal_text, random_goal
 from tasks.family import Family, Range, Row, Viewpoint
@@ -22,6 +22,7 @@ _DIGITS: Final = 4
 _ROWS_TRIED: Final = 1000
 
 Point = tuple[float, float]
+Drawn = float | str
 
 
 @dataclass(frozen=True)
@@ -34,8 +35,8 @@ class Task:
         goal: as text.
         scene: content of its scene file; None: the plain world.
         parameters: of the nodes, by node; that of the scene file is added where it is written.
-        disturbance: arguments of ``sim/disturb``; empty: nothing goes wrong.
-        drawn: numbers that failures are sorted by, see :data:`tasks.failures.AXES`.
+        disturbance: request to ``sim/disturb``; empty: nothing goes wrong.
+        drawn: what failures are sorted by, see :data:`tasks.failures.AXES`.
     """
 
     family: str
@@ -45,7 +46,7 @@ class Task:
     scene: Mapping[str, Any] | None = None
     parameters: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     disturbance: Mapping[str, Any] = field(default_factory=dict)
-    drawn: Mapping[str, float] = field(default_factory=dict)
+    drawn: Mapping[str, Drawn] = field(default_factory=dict)
 
     def to_json(self) -> dict[str, Any]:
         """For a file, with lists in place of tuples."""
@@ -65,22 +66,15 @@ def draw_task(family: Family, seed: int) -> Task:
     blocks = low if low == high else int(np.random.default_rng([seed, 2]).integers(low, high + 1))
     layout = random_layout(seed, blocks)
     goal = random_goal([name for stack in layout for name in stack], seed)
-    return Task(
-        family.name,
-        seed,
-        layout,
-        goal_text(goal),
-        parameters=_sensor(family, seed),
-        disturbance=dict(family.disturbance),
-        drawn=_heights(layout, goal),
-    )
+    return _with_errors(Task(family.name, seed, layout, goal_text(goal),
+                             drawn=_heights(layout, goal)), family)  # fmt: skip
 
 
 def _task_of_its_own(family: Family, seed: int) -> Task:
     rng = np.random.default_rng([seed, 2])
     blocks = int(rng.integers(family.blocks[0], family.blocks[1] + 1))
     places = _draw_row(family.row or Row((3, 3), (0.15, 0.15)), rng)
-    colors = [str(color) for color in rng.permutation(sorted(COLORS))[:blocks]]
+    colors = [str(color) for color in rng.permutation(list(family.colors))[:blocks]]
     names = [object_name(color, str(rng.choice(list(family.shapes)))) for color in colors]
     sizes = {name: _uniform(family.sizes or (0.045, 0.045), rng) for name in names}
     layout = random_arrangement(names, rng, len(places))
@@ -93,9 +87,8 @@ def _task_of_its_own(family: Family, seed: int) -> Task:
         "blocks": {"named": {name: {"size": [size] * 3} for name, size in sizes.items()}},
         "cameras": [camera_of(view, places, highest, azimuth)],
     }
-    parameters = _sensor(family, seed)
-    parameters["perception_node"] = {
-        "stack_positions": [value for x, y in places for value in (x, y, 0.0)]
+    parameters = {
+        "perception_node": {"stack_positions": [value for x, y in places for value in (x, y, 0.0)]}
     }
     drawn = {
         "places": len(places),
@@ -105,16 +98,29 @@ def _task_of_its_own(family: Family, seed: int) -> Task:
         "farthest place": max(math.hypot(*place) for place in places),
         **_heights(layout, goal),
     }
-    return Task(
-        family.name,
-        seed,
-        layout,
-        goal_text(goal),
-        scene,
-        parameters,
-        dict(family.disturbance),
-        {name: round(float(value), _DIGITS) for name, value in drawn.items()},
-    )
+    rounded = {name: round(float(value), _DIGITS) for name, value in drawn.items()}
+    task = Task(family.name, seed, layout, goal_text(goal), scene, parameters, {}, rounded)
+    return _with_errors(task, family)
+
+
+def _with_errors(task: Task, family: Family) -> Task:
+    """The task with what goes wrong in it, drawn apart from all else."""
+    rng = np.random.default_rng([task.seed, 3])
+    drawn: dict[str, Drawn] = dict(task.drawn)
+    sensor, disturbance = dict(family.noise), dict(task.disturbance)
+    if family.masks:
+        kind = str(rng.choice(list(family.masks)))
+        sensor |= {"sensor.segmentation.kind": kind, "sensor.segmentation.strength": 1}
+        drawn["masks"] = kind
+    if family.disturbances:
+        disturbance = dict(family.disturbances[int(rng.integers(len(family.disturbances)))])
+        drawn["disturbance"] = " ".join(
+            str(disturbance[key]) for key in ("kind", "what", "when") if key in disturbance
+        )
+    parameters = {node: dict(values) for node, values in task.parameters.items()}
+    if sensor:
+        parameters["sim_node"] = {**sensor, "sensor.seed": task.seed}
+    return replace(task, parameters=parameters, disturbance=disturbance, drawn=drawn)
 
 
 def reachable_goal(layout: Stacks, rng: np.random.Generator) -> Stacks:
@@ -165,12 +171,6 @@ def _is_in_reach(row: Row, place: Point) -> bool:
     x, y = place
     low, high = row.reach
     return low <= math.hypot(x, y) <= high and abs(math.atan2(y, x)) <= row.bearing
-
-
-def _sensor(family: Family, seed: int) -> dict[str, dict[str, Any]]:
-    if not family.sensor:
-        return {}
-    return {"sim_node": {**family.sensor, "sensor.seed": seed}}
 
 
 def _heights(layout: Stacks, goal: Stacks) -> dict[str, float]:

@@ -32,7 +32,7 @@ class Axis:
 
     Attributes:
         name: key in a task's ``drawn``.
-        edges: between the bins; empty: every value is a bin of its own.
+        edges: between the bins; empty: every value, a number or a word, is a bin of its own.
         unit: behind the numbers.
     """
 
@@ -40,15 +40,14 @@ class Axis:
     edges: tuple[float, ...] = ()
     unit: str = ""
 
-    def bins(self, values: Sequence[float]) -> list[str]:
+    def bins(self, values: Sequence[Any]) -> list[str]:
         """The bins of some values, in order; only those that have any value."""
-        if not self.edges:
-            return [f"{value:g}{self.unit}" for value in sorted(set(values))]
-        inhabited = {bisect.bisect_right(self.edges, value) for value in values}
-        return [self._name(number) for number in sorted(inhabited)]
+        return list(dict.fromkeys(self.bin_of(value) for value in sorted(values)))
 
-    def bin_of(self, value: float) -> str:
+    def bin_of(self, value: Any) -> str:
         """The bin of a value; one on an edge is in the upper bin."""
+        if isinstance(value, str):
+            return value
         if not self.edges:
             return f"{value:g}{self.unit}"
         return self._name(bisect.bisect_right(self.edges, value))
@@ -68,6 +67,8 @@ AXES: Final = (
     Axis("smallest block", (3.5, 4.0), " cm"),
     Axis("camera angle", (-5.0, 5.0), "°"),
     Axis("farthest place", (0.5, 0.6), " m"),
+    Axis("masks"),
+    Axis("disturbance"),
     Axis("highest stack of the start", (4.0, 6.0)),
     Axis("highest stack of the goal", (4.0, 6.0)),
 )

@@ -12,6 +12,11 @@ from scene_graph import BOX
 #: Low and high end of what is drawn uniformly; of whole numbers both ends included.
 Range = tuple[float, float]
 
+#: The colours that the visual module was trained on; a task stays the same where more are known.
+NINE_COLORS: Final = (
+    "blue", "brown", "cyan", "green", "orange", "pink", "purple", "red", "yellow",
+)  # fmt: skip
+
 
 class UnknownFamilyError(ValueError):
     """There is no family of that name; the sentence says which there are."""
@@ -72,12 +77,12 @@ class Family:
         what: for the table.
         blocks: how many.
         sizes: edge of a block, of its own each [m].
-        shapes: of the blocks.
+        shapes, colors: of the blocks, in families with scenes of their own.
         row: where the places are.
         viewpoint: where the camera is.
-        sensor: parameters of ``sim_node`` for noise of the pictures and errors of the masks; the
-            seed of each task is added where there are any.
-        disturbance: arguments of ``sim/disturb`` when the task begins.
+        noise: parameters ``sensor.*`` of ``sim_node``; the seed of each task is added.
+        masks: kinds of errors of the masks, each by one pixel, of which a task has one.
+        disturbances: requests to ``sim/disturb``, of which a task has one when it begins.
         file: the result file's name in benchmarks/results; empty: ``tasks_NAME``.
         success, low: least success rate, and least lower end of its interval.
         seconds: greatest median of a task's wall time, one graph at a time [s]; None: no bound.
@@ -88,10 +93,12 @@ class Family:
     blocks: tuple[int, int]
     sizes: Range | None = None
     shapes: tuple[str, ...] = (BOX,)
+    colors: tuple[str, ...] = NINE_COLORS
     row: Row | None = None
     viewpoint: Viewpoint | None = None
-    sensor: Mapping[str, Any] = field(default_factory=dict)
-    disturbance: Mapping[str, Any] = field(default_factory=dict)
+    noise: Mapping[str, Any] = field(default_factory=dict)
+    masks: tuple[str, ...] = ()
+    disturbances: tuple[Mapping[str, Any], ...] = ()
     file: str = ""
     success: float | None = None
     low: float | None = None
@@ -114,8 +121,23 @@ def plain(name: str, blocks: int, **bounds: Any) -> Family:
     return Family(name, what, (blocks, blocks), file=f"tasks_{blocks}", **bounds)
 
 
-#: What a real RGB-D camera does to the depth, and a good segmenter to the masks.
-RGBD_CAMERA: Final[Mapping[str, Any]] = {}
+#: What a real RGB-D camera does to the depth.
+RGBD_CAMERA: Final[Mapping[str, Any]] = {
+    "sensor.depth.noise": 0.0015,
+    "sensor.depth.edge_dropout": 0.5,
+    "sensor.depth.edge_width": 2,
+}
+#: What a good segmenter does to the masks.
+MASK_ERRORS: Final = ("eroded", "dilated", "shifted", "boundary")
+#: What passes, or can be repaired, while a task runs.
+MISHAPS: Final[tuple[Mapping[str, Any], ...]] = (
+    {"kind": "slip", "when": "in_air"},
+    {"kind": "jam", "when": "grasp", "seconds": 4.0},
+    {"kind": "cover", "what": "hand", "seconds": 4.0},
+    {"kind": "cover", "what": "sheet", "seconds": 4.0},
+    {"kind": "shove", "acceleration": 1.5},
+    {"kind": "nudge"},
+)
 
 FAMILIES: Final[tuple[Family, ...]] = (
     plain("three", 3),
@@ -130,8 +152,15 @@ FAMILIES: Final[tuple[Family, ...]] = (
         sizes=(0.03, 0.06),
         row=Row(),
         viewpoint=Viewpoint(),
-        sensor=RGBD_CAMERA,
+        noise=RGBD_CAMERA,
+        masks=MASK_ERRORS,
         success=0.95,
+    ),
+    Family(
+        "disturbed",
+        "6 blocks, one disturbance a task",
+        blocks=(6, 6),
+        disturbances=MISHAPS,
     ),
 )
 
@@ -148,6 +177,6 @@ def family_named(name: str) -> Family:
 def family_of(blocks: int) -> Family:
     """The plain family of so many blocks; raises UnknownFamilyError."""
     for family in FAMILIES:
-        if not family.has_own_scenes and family.blocks == (blocks, blocks):
+        if family.result == f"tasks_{blocks}":
             return family
     raise UnknownFamilyError(f"{blocks} blocks asked for; plain families have 3 to 7")

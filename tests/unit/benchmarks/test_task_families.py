@@ -175,9 +175,9 @@ def test_every_number_of_places_and_of_blocks_and_both_sides_occur() -> None:
     tasks = [draw_task(VARIED, seed) for seed in range(200)]
     assert {task.drawn["places"] for task in tasks} == {2, 3, 4, 5}
     assert {task.drawn["blocks"] for task in tasks} == {4, 5, 6}
-    angles = [task.drawn["camera angle"] for task in tasks]
+    angles = [float(task.drawn["camera angle"]) for task in tasks]
     assert min(angles) < -10.0 and max(angles) > 10.0
-    sizes = [task.drawn["smallest block"] for task in tasks]
+    sizes = [float(task.drawn["smallest block"]) for task in tasks]
     assert min(sizes) >= 3.0 and max(sizes) > 4.5
 
 
@@ -202,10 +202,29 @@ def test_with_three_places_every_state_can_be_reached_and_is_drawn() -> None:
     assert {reachable_goal(start, rng) for _ in range(2000)} == reached
 
 
-def test_noise_gets_the_seed_of_its_task() -> None:
-    family = replace(VARIED, sensor={"sensor.depth_noise": 0.0015})
-    parameters = draw_task(family, 7).parameters["sim_node"]
-    assert parameters == {"sensor.depth_noise": 0.0015, "sensor.seed": 7}
+@every_seed
+def test_pictures_are_as_of_a_real_camera_with_the_seed_of_the_task(seed: int) -> None:
+    task = draw_task(VARIED, seed)
+    parameters = task.parameters["sim_node"]
+    assert parameters["sensor.depth.noise"] == 0.0015
+    assert parameters["sensor.segmentation.kind"] == task.drawn["masks"]
+    assert parameters["sensor.segmentation.strength"] == 1
+    assert parameters["sensor.seed"] == seed
+
+
+def test_every_kind_of_mask_error_and_every_disturbance_occurs() -> None:
+    kinds = {draw_task(VARIED, seed).drawn["masks"] for seed in range(100)}
+    assert kinds == set(VARIED.masks)
+    disturbed = family_named("disturbed")
+    drawn = [draw_task(disturbed, seed) for seed in range(100)]
+    assert len({task.drawn["disturbance"] for task in drawn}) == len(disturbed.disturbances)
+    assert all(task.disturbance in disturbed.disturbances for task in drawn)
+
+
+def test_a_disturbed_task_is_a_plain_one_in_which_something_goes_wrong() -> None:
+    plain, disturbed = draw_task(family_of(6), 5), draw_task(family_named("disturbed"), 5)
+    assert (plain.layout, plain.goal) == (disturbed.layout, disturbed.goal)
+    assert not plain.disturbance and disturbed.disturbance
 
 
 def test_a_row_that_cannot_be_in_reach_is_refused() -> None:
