@@ -163,7 +163,7 @@ class SimulatedArm:
         self.sent: list[tuple[Trajectory, JointValues]] = []
         self.joints = self._seen = JointValues(HOME_Q.copy(), np.full(2, OPEN))
         self.frozen, self.fingers_stuck_at, self.cut_at = False, -1.0, 0.0
-        self.closed, self.problem, self.standing = False, "", False
+        self.closed, self.standing = False, False
         self._time, self._stamp, self._began = 1000.0, 50.0, 0.0
         self._box = ArmStateBox(self.now)
         self._following: Trajectory | None = None
@@ -192,6 +192,14 @@ class SimulatedArm:
             self._tick()
 
     # Where the arm's states arrive
+
+    @property
+    def problem(self) -> str:
+        return self._box.problem
+
+    def refuse(self, problem: str) -> None:
+        """Something arrives that is no measurement."""
+        self._box.refuse(problem)
 
     def now(self) -> float:
         return self._time

@@ -47,8 +47,19 @@ def test_rest_takes_its_time(arm: SimulatedArm) -> None:
     assert arm.at_home()
 
 
-def test_an_arm_that_never_rests_is_reported(arm: SimulatedArm) -> None:
+def test_an_arm_that_shakes_is_one_whose_states_cannot_be_used(arm: SimulatedArm) -> None:
     arm.trembling = 0.01
+    with pytest.raises(ExecutionError, match="the joints shake by") as caught:
+        Follower(arm, arm.send, ExecutionSettings()).wait_for_rest(lambda: False)
+    assert caught.value.reason is MotionReason.NO_JOINT_STATES
+
+
+def test_an_arm_that_never_rests_is_reported(arm: SimulatedArm) -> None:
+    def creep() -> bool:
+        arm.joints = JointValues(arm.joints.arm + 0.003, arm.joints.fingers)
+        return False
+
+    arm.when(creep, lambda: None)
     with pytest.raises(ExecutionError, match="does not come to rest") as caught:
         Follower(arm, arm.send, ExecutionSettings()).wait_for_rest(lambda: False)
     assert caught.value.reason is MotionReason.TIMEOUT

@@ -283,7 +283,7 @@ def test_fault_3_a_clock_that_stands_still_for_a_while_is_waited_out(bench: Benc
 
 
 def test_fault_13_joint_states_that_cannot_be_used_are_not_called_missing(bench: Bench) -> None:
-    bench.arm.problem = "joint_states arrive without finite positions of panda_joint3"
+    bench.arm.refuse("joint_states arrive without finite positions of panda_joint3")
     bench.arm.silent = True
     end = bench.carry_out()
     assert end.reason is MotionReason.NO_JOINT_STATES

@@ -260,3 +260,22 @@ def test_a_long_wait_is_told_of_about_once_a_second() -> None:
     gaps = [after - before for before, after in pairwise(times)]
     assert max(gaps) <= 1.1
     assert len(times) < 30
+
+
+def test_fault_13_an_arm_of_which_nothing_can_be_known_is_refused_within_a_minute() -> None:
+    """Its joint states shake from the beginning: each wait for news is in vain, and made once."""
+
+    def shake(bench: LoopBench, plan: Plan) -> Iterator[MotionReport]:
+        bench.clock.seconds += 15.0
+        bench.look()
+        yield from fail(MotionReason.NO_JOINT_STATES, "the joints shake")(bench, plan)
+
+    bench = LoopBench(shake)
+    bench.live_on()
+    assert bench.motion.knows_arm
+    bench.arm = ArmPlace.UNKNOWN
+    begin = bench.clock.seconds
+    outcome = bench.achieve()
+    assert outcome.status == Status.MOTION_FAILED
+    assert "the joints shake" in outcome.message
+    assert bench.clock.seconds - begin < 45.0

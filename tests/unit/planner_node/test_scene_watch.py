@@ -203,3 +203,11 @@ def test_waiting_can_be_cancelled() -> None:
     with pytest.raises(CancelledError):
         watched.watch.wait(lambda: watched.clock.seconds > 1001.0)
     assert watched.clock.seconds < 1001.2
+
+
+def test_fault_13_what_perception_refuses_is_told_however_rarely_it_says_so() -> None:
+    """A simulation at four times real time: 2 s between two refusals are 8 s of its time."""
+    watched = Watched()
+    watched.see(8.0, status=GraphStatus.BAD_IMAGE, message="no camera/segmentation arrives")
+    with pytest.raises(NotConfidentError, match="no camera/segmentation arrives"):
+        watched.watch.latest()

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 from sim_peer import edges, exact_ray_cast, ray_cast, tiny_picture
 
+from sim_node.camera import Frame
 from sim_node.layouts import random_layout
+from sim_node.rendering import surfaces
 from sim_node.scene import CameraConfig, SceneConfig
 from sim_node.world import World
 
@@ -109,3 +111,34 @@ def test_a_block_that_takes_the_number_of_one_that_is_gone_has_its_own_looks(wor
     frame = world.render()
     red, _, blue = frame.rgb[frame.labels == world.label("blue_sphere")].mean(axis=0)
     assert blue > 2 * red
+
+
+def picture(world: World, seed: int) -> Frame:
+    """After a reset, with the arm where the seed has it."""
+    world.reset(random_layout(seed, 5), seed)
+    for index, position in zip(world.joint_indices, ARMS[seed % len(ARMS)]):
+        pybullet.resetJointState(world.robot, index, position, 0.0, physicsClientId=world.client)
+    return world.render()
+
+
+def test_what_was_before_a_reset_is_not_in_the_pictures_after_it(
+    world: World, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They are those of a new world that makes all surfaces anew, bit by bit."""
+    after_resets = [picture(world, seed) for seed in range(6)]
+    monkeypatch.setattr(surfaces, "_surface", surfaces._surface.__wrapped__)
+    for seed, frame in enumerate(after_resets):
+        with World() as new:
+            expected = picture(new, seed)
+        assert (frame.rgb == expected.rgb).all()
+        assert (frame.depth == expected.depth).all()
+        assert (frame.labels == expected.labels).all()
+
+
+def test_bodies_that_look_as_others_did_get_the_surfaces_of_those(world: World) -> None:
+    pictures = [picture(world, seed) for seed in (3, 3)]
+    made = surfaces._surface.cache_info()
+    pictures.append(picture(world, 3))
+    assert surfaces._surface.cache_info().currsize == made.currsize <= made.maxsize
+    assert surfaces._surface.cache_info().misses == made.misses
+    assert all((pictures[0].rgb == other.rgb).all() for other in pictures[1:])

@@ -10,6 +10,7 @@ from typing import Final, Protocol
 
 from ..robots.joints import JointValues
 from .lived_time import LivedTime
+from .shaking import Shaking
 
 #: Joints that move by less than this between two looks rest [rad or m].
 REST_TOLERANCE = 2e-3
@@ -73,6 +74,7 @@ class ArmStateBox:
         self._newest: ArmState | None = None
         self._rest_positions: JointValues | None = None
         self._rest_since = 0.0
+        self._shaking = Shaking()
         self._problem = ""
         self._closed = False
 
@@ -91,7 +93,10 @@ class ArmStateBox:
         return self._clock()
 
     def put(self, stamp: float | None, positions: JointValues) -> None:
-        """A new measurement; see :class:`ArmState`. Without a stamp, its arrival counts."""
+        """A new measurement; see :class:`ArmState`. Without a stamp, its arrival counts.
+
+        One of joints that have only been shaking for a while is refused.
+        """
         with self._changed:
             stamped = stamp is not None
             stamp = self.now() if stamp is None else stamp
@@ -101,6 +106,9 @@ class ArmStateBox:
             if moved or backwards:
                 self._rest_positions, self._rest_since = positions, stamp
             resting = stamp - self._rest_since
+            if problem := self._shaking.problem(stamp, positions, resting):
+                self._problem = problem
+                return
             self._newest = ArmState(stamp, self.now(), positions, resting, stamped)
             self._problem = ""
             self._changed.notify_all()

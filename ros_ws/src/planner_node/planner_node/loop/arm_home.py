@@ -33,6 +33,9 @@ PASSING: Final = (
 FIRST_REPORT_SECONDS: Final = 2.0
 #: An arm that moves though no plan is under way has this long to come to rest [s].
 REST_SECONDS: Final = 30.0
+#: Before a first motion, news of an arm of which nothing is known is waited for so long [s]; then
+#: the camera is asked all the same.
+NEWS_SECONDS: Final = 8.0
 #: How often the arm is asked to go home before it counts as stuck.
 HOME_ATTEMPTS: Final = 3
 #: A plan that still goes on after so many motion_silence_timeouts does not obey.
@@ -127,19 +130,23 @@ class ArmHome:
         motion, settings = self._motion, self._settings
         if not motion.knows_arm:
             return
-        unknown = (ArmPlace.UNKNOWN, settings.perceive_timeout, "waiting for news of the arm")
+        news = settings.perceive_timeout if moved else min(NEWS_SECONDS, settings.perceive_timeout)
+        unknown = (ArmPlace.UNKNOWN, news, "waiting for news of the arm")
         moving = (ArmPlace.MOVING, REST_SECONDS, "waiting for the arm to rest")
         for place, seconds, doing in (unknown, moving, unknown):
             if motion.newest.arm == place:
                 self._tell(f"{doing}: {describe_arm(motion.newest, motion.silence)}")
-                self._await_other(place, seconds)
+                came = self._await_other(place, seconds)
                 self._check()
+                if not came:
+                    break
         silence = motion.silence or 0.0
         if moved and motion.newest.arm == ArmPlace.UNKNOWN and not motion.foreign:
             if silence < settings.perceive_timeout:
                 raise MotionFailedError(
-                    f"no joint_states arrive (waited {settings.perceive_timeout:g} s), so nobody "
-                    "knows where the arm is; is the arm's driver (or sim_node) running?"
+                    "no joint_states that can be used arrive (waited "
+                    f"{settings.perceive_timeout:g} s), so nobody knows where the arm is; is the "
+                    "arm's driver (or sim_node) running?"
                 )
             raise MotionSilentError(
                 f"the motion node reports nothing any more (for {silence:.0f} s); is motion_node "
@@ -149,9 +156,9 @@ class ArmHome:
                 speaks=False,
             )
 
-    def _await_other(self, place: ArmPlace, seconds: float) -> None:
+    def _await_other(self, place: ArmPlace, seconds: float) -> bool:
         motion = self._motion
-        motion.wait(
+        return motion.wait(
             lambda: motion.newest.arm != place or bool(motion.foreign), seconds, self._stopped
         )
 

@@ -7,6 +7,8 @@ import threading
 from collections.abc import Callable
 from typing import Final
 
+from scene_graph import GraphStatus
+
 from ..errors import CancelledError, NoSceneGraphError, NotConfidentError, ObjectLostError
 from ..settings import Settings
 from .clock import Clock
@@ -57,7 +59,7 @@ class SceneWatch:
             raise NoSceneGraphError(
                 "no scene graph has arrived; are the camera (sim_node) and perception_node running?"
             )
-        self._check_time(sighting.stamp, after, self._clock.now() - heard)
+        self._check_time(sighting, after, self._clock.now() - heard)
         scene = scene_in(sighting, self._settings.min_confidence)
         if missing := sorted(needed - set(scene.names)):
             raise ObjectLostError(missing, scene.names)
@@ -88,8 +90,8 @@ class SceneWatch:
             with self._arrived:
                 self._clock.wait(self._arrived, POLL_SECONDS)
 
-    def _check_time(self, stamp: int, after: int, silence: float) -> None:
-        now = self.now()
+    def _check_time(self, sighting: Sighting, after: int, silence: float) -> None:
+        now, stamp = self.now(), sighting.stamp
         if now == 0:
             raise NoSceneGraphError(
                 "use_sim_time is set, but nothing arrives on clock; is sim_node running?"
@@ -106,7 +108,9 @@ class SceneWatch:
                 f"the newest scene graph is stamped {-age:.1f} s in the future; does use_sim_time "
                 "have the same value on all nodes, or was the simulation just restarted?"
             )
-        if age > limit:
+        # What perception refuses is not planned on: its reason says more than its age, and in a
+        # simulation that runs faster than life it is said less often than every graph_max_age.
+        if age > limit and sighting.status == GraphStatus.CONFIDENT:
             raise NotConfidentError(
                 f"the newest scene graph is {age:.1f} s old; are the camera and perception_node "
                 "still running, and does use_sim_time have the same value on all nodes?"
