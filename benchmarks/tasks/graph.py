@@ -20,14 +20,21 @@ from tamp_bringup.scene_observer import SceneObserver, SimulationError
 
 #: How long a node may take until it is there, on a busy machine [s].
 START_SECONDS: Final = 60.0
+_DOMAINS_TRIED: Final = 5
 _LOOK_SECONDS: Final = 1.0
 _DOMAIN: Final = "ROS_DOMAIN_ID"
+
+
+class DomainTakenError(SimulationError):
+    """Another graph is in the domain; it may be what is left of one that was killed."""
 
 
 class Graph:
     """The four nodes, what watches them and who asks; leaving it stops all.
 
     Each has a domain that no other process of this host has, unless the environment names one.
+    Where nodes of another graph are found in it, the graph is started anew in another domain:
+    nobody has asked it for anything yet.
 
     Args:
         logs: folder of the nodes' logs.
@@ -51,8 +58,18 @@ class Graph:
 
         Raises:
             NodeDiedError: a node cannot start.
-            SimulationError: some node is not there in time.
+            SimulationError: some node is not there in time, or another graph is in the domain.
         """
+        for attempt in range(_DOMAINS_TRIED):
+            try:
+                self._start()
+                break
+            except DomainTakenError:
+                if _DOMAIN in os.environ or attempt == _DOMAINS_TRIED - 1:
+                    raise
+        return self
+
+    def _start(self) -> None:
         with ExitStack() as stack:
             if _DOMAIN not in os.environ:
                 domain = reserve_domain()
@@ -65,8 +82,13 @@ class Graph:
             self.observer = stack.enter_context(SceneObserver())
             self.planner = stack.enter_context(PlannerClient())
             self._wait_until_ready()
+            names = self.observer.node_names
+            if several := [node for node in NODES if names.count(node) > 1]:
+                domain_id = os.environ[_DOMAIN]
+                raise DomainTakenError(
+                    f"there is another {several[0]} in the domain {domain_id}; stop that graph"
+                )
             self._stack = stack.pop_all()
-        return self
 
     def __exit__(self, *error: Any) -> None:
         self._stack.__exit__(*error)

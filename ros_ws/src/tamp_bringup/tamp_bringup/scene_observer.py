@@ -148,10 +148,15 @@ class SceneObserver:
     def wait_for_nodes(self, names: Collection[str], timeout: float = 20.0) -> None:
         """Returns when all of these nodes have been discovered; raises SimulationError."""
         deadline = time.monotonic() + timeout
-        while missing := sorted(set(names) - set(self._node.get_node_names())):
+        while missing := sorted(set(names) - set(self.node_names)):
             if time.monotonic() > deadline:
                 raise SimulationError(f"{', '.join(missing)} did not start within {timeout:g} s")
             time.sleep(0.05)
+
+    @property
+    def node_names(self) -> list[str]:
+        """The names of all nodes that have been discovered; one that is there twice is twice."""
+        return list(self._node.get_node_names())
 
     @property
     def truth(self) -> SceneGraph | None:
