@@ -96,7 +96,8 @@ class Campaign:
                 content = records.read(seed)
                 if failure := content["failure"]:
                     command = command_of(settings.family, seed, settings.real_time_factor)
-                    _say(f"seed {seed}: failed in {failure['module']}: {failure['reason']}")
+                    module = failure["module"] or "unknown"
+                    _say(f"seed {seed}: failed in {module}: {failure['reason']}")
                     _say(f"    again: {command}    kept: {records.kept(seed)}")
                 self._stop.check()
 

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from results_file import Row, wilson_interval
 
-from tasks.failures import Result, failure_table
+from tasks.failures import Result, failure_table, reason_of
 from tasks.family import Family
 
 TIMINGS: Final = ("perceive", "plan", "motion", "execute", "total")
@@ -165,7 +165,7 @@ def make_details(
     commands = {
         result["seed"]: command_of(family, result["seed"], real_time_factor) for result in failures
     }
-    modules = Counter((result["failure"] or {}).get("module", "") for result in failures)
+    modules = Counter(reason_of(result)[0] for result in failures)
     table = failure_table(results, commands)
     commits = sorted({result["commit"] for result in results if "commit" in result})
     return {
