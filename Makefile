@@ -39,9 +39,10 @@ train-visual: setup  ## train the visual module G without labels; resumable
 eval-visual: setup  ## scene graph accuracy on unseen states; QUICK=1
 	@$(RUN) python benchmarks/eval_visual.py $(ARGS)
 
-eval-tasks: setup  ## success from pixels to tower; N= BLOCKS= RTF= JOBS= RESUME=1 QUICK=1 BASELINE=
-	@$(RUN) python benchmarks/eval_tasks.py $(if $(N),--n $(N)) $(if $(BLOCKS),--blocks $(BLOCKS)) \
-	  $(if $(RTF),--real-time-factor $(RTF)) $(if $(JOBS),--jobs $(JOBS)) $(if $(RESUME),--resume) $(if $(BASELINE),--baseline "$(BASELINE)")
+eval-tasks: setup  ## success from pixels to tower; FAMILY=six|seven|varied|… N= JOBS= RTF= RESUME=1 SEED= QUICK=1 BASELINE=, BLOCKS=6 is FAMILY=six
+	@$(RUN) python benchmarks/eval_tasks.py $(if $(FAMILY),--family "$(FAMILY)") $(if $(N),--n $(N)) \
+	  $(if $(BLOCKS),--blocks $(BLOCKS)) $(if $(SEED),--seed $(SEED)) $(if $(RTF),--real-time-factor $(RTF)) \
+	  $(if $(JOBS),--jobs $(JOBS)) $(if $(RESUME),--resume) $(if $(BASELINE),--baseline "$(BASELINE)")
 
 eval-faults: setup  ## faults of every kind in every phase, and what becomes of the task; ONLY= PHASE= SEED= TRIALS= JOBS= RTF= RESUME=1 QUICK=1
 	@$(RUN) python benchmarks/eval_faults.py $(if $(ONLY),--only "$(ONLY)") $(if $(PHASE),--phase $(PHASE)) \

@@ -17,6 +17,8 @@ THINKING: Final = ("perceive", "plan", "motion")
 _COLORS: Final = {"perceive": "#4c72b0", "plan": "#dd8452", "motion": "#8172b3"}
 _SUCCEEDED: Final = "#55a868"
 _FAILED: Final = "#c44e52"
+#: Of more tasks only every tenth can be named below its bar.
+_NAMED_BARS: Final = 60
 
 
 def plot_result(result: Mapping[str, Any], folder: Path) -> list[Path]:
@@ -65,9 +67,14 @@ def _draw_execution(axes: Axes, tasks: Sequence[Mapping[str, Any]]) -> None:
         [task["timing_s"]["execute"] for task in tasks],
         color=[_SUCCEEDED if task["success"] else _FAILED for task in tasks],
     )
-    axes.bar_label(bars, [str(task["moves_executed"]) for task in tasks], fontsize=7)
-    axes.set_ylabel("seconds of execution\n(label: moves)")
-    axes.set_xticks(list(places), [str(task["seed"]) for task in tasks], rotation=90, fontsize=7)
+    if len(tasks) <= _NAMED_BARS:
+        axes.bar_label(bars, [str(task["moves_executed"]) for task in tasks], fontsize=7)
+        axes.set_ylabel("seconds of execution\n(label: moves)")
+    else:
+        axes.set_ylabel("seconds of execution")
+    named = list(places)[:: 1 if len(tasks) <= _NAMED_BARS else 10]
+    seeds = [str(tasks[place]["seed"]) for place in named]
+    axes.set_xticks(named, seeds, rotation=90, fontsize=7)
     axes.set_xlabel("seed of the task")
     axes.margins(y=0.15)
     axes.legend(

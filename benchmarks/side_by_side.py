@@ -4,12 +4,16 @@
 from __future__ import annotations
 
 import argparse
+import ctypes
+import signal
 import subprocess
 import sys
-from collections.abc import Sequence
-from typing import TypeVar
+from collections.abc import Collection, Sequence
+from typing import Final, TypeVar
 
 Item = TypeVar("Item")
+
+_PR_SET_PDEATHSIG: Final = 1
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,19 +27,42 @@ def share_of(items: Sequence[Item], options: argparse.Namespace) -> Sequence[Ite
     return items if options.share is None else items[options.share :: options.jobs]
 
 
-def run_shares(jobs: int) -> bool:
+def run_shares(jobs: int, keep_open: Collection[int] = ()) -> bool:
     """Runs this program once for each share; whether all of them came to their end.
 
-    Each resumes, as what was to be forgotten is forgotten before. Ctrl-C reaches all, and all are
-    waited for.
+    Each resumes, as what was to be forgotten is forgotten before. Ctrl-C reaches all, SIGTERM is
+    passed on, and all are waited for. If this process is killed, its shares get SIGTERM.
+
+    Args:
+        keep_open: file descriptors that the shares inherit, such as that of a lock.
     """
     command = [sys.executable, *sys.argv, "--resume"]
-    shares = [subprocess.Popen([*command, "--share", str(share)]) for share in range(jobs)]
+    shares = [
+        subprocess.Popen(
+            [*command, "--share", str(share)],
+            pass_fds=tuple(keep_open),
+            preexec_fn=_end_with_parent,
+        )
+        for share in range(jobs)
+    ]
+
+    def pass_on(number: int, _frame: object) -> None:
+        for share in shares:
+            share.send_signal(number)
+
+    before = signal.signal(signal.SIGTERM, pass_on)
     interrupted = False
-    for share in shares:
-        while share.poll() is None:
-            try:
-                share.wait()
-            except KeyboardInterrupt:
-                interrupted = True
+    try:
+        for share in shares:
+            while share.poll() is None:
+                try:
+                    share.wait()
+                except KeyboardInterrupt:
+                    interrupted = True
+    finally:
+        signal.signal(signal.SIGTERM, before)
     return not interrupted and not any(share.returncode for share in shares)
+
+
+def _end_with_parent() -> None:
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)

@@ -124,10 +124,32 @@ def section(result: Mapping[str, Any], plots: Sequence[str]) -> list[str]:
     for plot in plots:
         lines += ["", f"![{result['name']}]({plot})"]
     details = result.get("details", {})
+    if failures := details.get("failure_table"):
+        lines += ["", *failure_table(failures)]
     if numbered := details.get("numbered"):
         lines += ["", *numbered_table(numbered)]
     if entries := details.get("dictionary"):
         lines += ["", *dictionary_table(entries)]
+    return lines
+
+
+def failure_table(failures: Mapping[str, Any]) -> list[str]:
+    """Reason × parameter bin: of how many tasks in a bin how many failed so."""
+    columns, rows = failures["columns"], failures["rows"]
+    failed = sum(row["n"] for row in rows)
+    names = [f"{column['axis']} {column['bin']}" for column in columns]
+    lines = [
+        f"{failed} of {failures['n']} tasks failed. By reason (module and sentence, with N for a "
+        "number and BLOCK for a name) and by what the task was like; the first line says how many "
+        "tasks were like that.",
+        "",
+        "| " + " | ".join(_cell(name) for name in ("reason", "all", *names, "again")) + " |",
+        "|---|" + "---:|" * (1 + len(names)) + "---|",
+    ]
+    lines.append(_counts_line("tasks", failures["n"], [column["n"] for column in columns], ""))
+    for row in rows:
+        reason = f"**{row['module']}**: {row['sentence']}"
+        lines.append(_counts_line(reason, row["n"], row["counts"], f"`{row['again']}`"))
     return lines
 
 
@@ -195,6 +217,11 @@ def write_page(results_folder: Path, page: Path) -> None:
     for plot in set(plot_folder.glob("*.svg")) - written:  # of results that are no more
         plot.unlink()
     page.write_text("\n".join(lines) + "\n")
+
+
+def _counts_line(reason: str, n: int, counts: Sequence[int], again: str) -> str:
+    cells = (reason, str(n), *(str(count) if count else "" for count in counts), again)
+    return "| " + " | ".join(_cell(cell) for cell in cells) + " |"
 
 
 def _shortened(sentence: str, length: int = 240) -> str:

@@ -6,8 +6,8 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
-from typing import Any, Final
+from collections.abc import Callable, Collection
+from typing import Any, Final, NamedTuple
 
 import rclpy
 from sensor_msgs.msg import Image
@@ -34,12 +34,24 @@ class SimulationError(RuntimeError):
     """The simulator does not answer, or refuses; the sentence says what to do."""
 
 
+class GraphTime(NamedTuple):
+    """How long one image took to become a scene graph, confident or not.
+
+    Attributes:
+        status: of the graph, as in its message.
+        seconds: wall time from the image's arrival to the graph [s].
+    """
+
+    status: int
+    seconds: float
+
+
 class SceneObserver:
     """Watches the simulator's ground truth, the camera and perception from a thread of its own.
 
     Attributes:
         recording: receives the camera's images while it is set.
-        graph_seconds: image → graph times of perception's newest confident graphs [s].
+        graph_times: image → graph times of perception's newest graphs, whatever their status.
     """
 
     def __init__(self, **node_arguments: Any) -> None:
@@ -50,7 +62,7 @@ class SceneObserver:
         self._graph: SceneGraphMsg | None = None
         self._image: Image | None = None
         self.recording: Recording | None = None
-        self.graph_seconds: deque[float] = deque(maxlen=GRAPH_TIMES_KEPT)
+        self.graph_times: deque[GraphTime] = deque(maxlen=GRAPH_TIMES_KEPT)
         self._news = threading.Condition()
         node = self._node
         node.create_subscription(SceneGraphMsg, "sim/ground_truth", self._on_truth, LATCHED)
@@ -125,6 +137,39 @@ class SceneObserver:
             assert self._graph is not None
             return self._graph
 
+    def any_graph(self, timeout: float = 20.0) -> SceneGraphMsg:
+        """A scene graph that perception publishes from now on, confident or not."""
+        with self._news:
+            before = self._graph
+            self._wait(lambda: self._graph is not before, "perception_node", timeout)
+            assert self._graph is not None
+            return self._graph
+
+    def wait_for_nodes(self, names: Collection[str], timeout: float = 20.0) -> None:
+        """Returns when all of these nodes have been discovered; raises SimulationError."""
+        deadline = time.monotonic() + timeout
+        while missing := sorted(set(names) - set(self.node_names)):
+            if time.monotonic() > deadline:
+                raise SimulationError(f"{', '.join(missing)} did not start within {timeout:g} s")
+            time.sleep(0.05)
+
+    @property
+    def node_names(self) -> list[str]:
+        """The names of all nodes that have been discovered; one that is there twice is twice."""
+        return list(self._node.get_node_names())
+
+    @property
+    def truth(self) -> SceneGraph | None:
+        """The newest ground truth, or None before any has arrived."""
+        message = self._truth
+        return None if message is None else graph_from_message(message)
+
+    @property
+    def simulated_seconds(self) -> float:
+        """Time of the newest ground truth since the simulator started [s]; 0 before any."""
+        message = self._truth
+        return 0.0 if message is None else seconds(message.header.stamp)
+
     def image(self) -> Any:
         """The newest camera image, (height, width, 3) uint8, or None."""
         return None if self._image is None else array_from_image(self._image, "rgb8")
@@ -144,8 +189,7 @@ class SceneObserver:
     def _on_graph(self, message: SceneGraphMsg) -> None:
         with self._news:
             self._graph = message
-            if message.status == message.CONFIDENT:
-                self.graph_seconds.append(message.processing_seconds)
+            self.graph_times.append(GraphTime(message.status, message.processing_seconds))
             self._news.notify_all()
 
     def _on_image(self, message: Image) -> None:
