@@ -143,9 +143,7 @@ def bodies_in(world: World) -> tuple[Body, ...]:
         )
         dynamics = pybullet.getDynamicsInfo(body, -1, physicsClientId=world.client)
         friction = (dynamics[1], dynamics[7], dynamics[6])
-        bodies.append(
-            Body(name, kind, tuple(extents), dynamics[0], friction, position, quaternion)
-        )
+        bodies.append(Body(name, kind, tuple(extents), dynamics[0], friction, position, quaternion))
     return tuple(bodies)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A recording's scene in MuJoCo, with the interface of ``sim_node.World`` that a controller uses."""
+"""A recording's scene in MuJoCo, with what a controller needs of ``sim_node.World``."""
 
 from __future__ import annotations
 
@@ -36,9 +36,7 @@ class MujocoWorld:
         names: of the blocks.
     """
 
-    def __init__(
-        self, recording: Recording, links: Sequence[Link], max_velocity: Array
-    ) -> None:
+    def __init__(self, recording: Recording, links: Sequence[Link], max_velocity: Array) -> None:
         self.arm = SIMULATED_ARMS[recording.robot]
         self.timestep = CONTROL_STEP
         self.steps = 0
@@ -56,15 +54,17 @@ class MujocoWorld:
         self._q = np.array([joint.qposadr[0] for joint in joints])
         self._v = np.array([joint.dofadr[0] for joint in joints])
         self._motors = np.array([self.model.actuator(name).id for name in self.arm.joints])
-        self._poses = np.array(
-            [self.model.joint(f"body:{name}").qposadr[0] for name in self.names]
-        )
+        self._poses = np.array([self.model.joint(f"body:{name}").qposadr[0] for name in self.names])
         self._is_finger = np.isin(self.arm.joints, self.arm.finger_joints)
         self.data.qpos[self._q] = recording.start
         self._target, self._rate = recording.start.copy(), np.zeros(len(self._q))
         mujoco.mj_forward(self.model, self.data)
         mass = np.array([by_joint[name].mass + FINGER_DRIVE for name in self.arm.finger_joints])
         self._finger_damping = 2.0 * np.sqrt(_FINGER_STIFFNESS * mass)
+
+    def limit_fingers(self, force: float) -> None:
+        """From now on each finger presses with so much at most [N]."""
+        self.max_effort = np.where(self._is_finger, force, self.max_effort)
 
     def command(self, positions: Array, velocities: Array | None = None) -> None:
         """Targets of the joints until the next command, shapes (n,), within the limits."""

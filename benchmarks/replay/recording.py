@@ -8,7 +8,6 @@ trajectories as a joint_trajectory_controller gets them, and poses over time.
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -137,7 +136,7 @@ class Recording:
             "names": self.trace.names,
             "notes": self.trace.notes,
         }
-        arrays = {"start": self.start}
+        arrays: dict[str, Any] = {"start": self.start}
         for index, command in enumerate(self.commands):
             arrays[f"times_{index}"] = command.times
             arrays[f"positions_{index}"] = command.positions
@@ -148,7 +147,7 @@ class Recording:
         part = path.with_suffix(".part")
         with part.open("wb") as file:
             np.savez_compressed(file, about=np.array(json.dumps(plain)), **arrays)
-        os.replace(part, path)
+        part.replace(path)
 
 
 _PLAIN: Final = ("seed", "source", "goal", "success", "robot", "joints", "places", "relations")
@@ -167,7 +166,8 @@ def load_recording(path: Path) -> Recording:
         raise RecordingError(f"{path}: {error}") from None
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise RecordingError(
-            f"{path} is no recording ({type(error).__name__}: {error}); remove it, and it is made anew"
+            f"{path} is no recording ({type(error).__name__}: {error}); remove it, and it is made "
+            "anew"
         ) from error
 
 
@@ -183,7 +183,7 @@ def _recording(arrays: Mapping[str, Any]) -> Recording:
             begins,
             arrays[f"times_{index}"],
             arrays[f"positions_{index}"],
-            arrays[f"velocities_{index}"] if f"velocities_{index}" in arrays else None,
+            arrays.get(f"velocities_{index}"),
         )
         for index, begins in enumerate(about["begins"])
     )
@@ -194,10 +194,7 @@ def _recording(arrays: Mapping[str, Any]) -> Recording:
         tuple(about["names"]),
         tuple(about["notes"]),
     )
-    bodies = tuple(
-        Body(**{key: tuple(value) if isinstance(value, list) else value for key, value in item.items()})
-        for item in about["bodies"]
-    )
+    bodies = tuple(_body(item) for item in about["bodies"])
     return Recording(
         seed=about["seed"],
         source=about["source"],
@@ -211,6 +208,18 @@ def _recording(arrays: Mapping[str, Any]) -> Recording:
         commands=commands,
         trace=trace,
         relations=_tuples(about["relations"]),
+    )
+
+
+def _body(item: Mapping[str, Any]) -> Body:
+    return Body(
+        item["name"],
+        item["shape"],
+        tuple(item["size"]),
+        item["mass"],
+        tuple(item["friction"]),
+        tuple(item["position"]),
+        tuple(item["quaternion"]),
     )
 
 

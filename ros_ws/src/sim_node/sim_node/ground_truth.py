@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from scene_graph import (
     base_name,
     split_object_name,
 )
+from scene_graph.places import Point
 
 from .world import World
 
@@ -25,12 +27,7 @@ _HEIGHT_TOLERANCE = 0.006
 
 
 def true_scene_graph(world: World) -> SceneGraph:
-    """Objects with true poses, and up-relations for the blocks that stand on something.
-
-    A block stands on another, or on a base, if its bottom touches the other's top and its centre
-    is above it. A block that stands on nothing (in the hand, fallen over between two places) has
-    no relation, so the graph is then no complete state.
-    """
+    """Objects with true poses, and up-relations for the blocks that stand on something."""
     config = world.config
     objects = []
     for name in sorted(world.names):
@@ -47,21 +44,35 @@ def true_scene_graph(world: World) -> SceneGraph:
                 world.label(name),
             )
         )
-    tops = [(base_name(i), np.array(base)) for i, base in enumerate(config.stack_positions)]
-    reach = {base_name(i): _base_reach(config.stack_positions) for i in range(config.stack_count)}
+    return graph_of_poses(objects, config.stack_positions)
+
+
+def graph_of_poses(objects: Sequence[SceneObject], positions: Sequence[Point]) -> SceneGraph:
+    """The scene graph of blocks whose poses are known, wherever they come from.
+
+    A block stands on another, or on a base, if its bottom touches the other's top and its centre
+    is above it. A block that stands on nothing (in the hand, fallen over between two places) has
+    no relation, so the graph is then no complete state.
+
+    Args:
+        objects: with poses and sizes.
+        positions: of the places on the table [m].
+    """
+    tops = [(base_name(i), np.array(base)) for i, base in enumerate(positions)]
+    reach = {base_name(i): _base_reach(positions) for i in range(len(positions))}
     for item in objects:
-        tops.append((item.name, np.add(item.position_world, [0.0, 0.0, 0.5 * config.block_size])))
-        reach[item.name] = 0.5 * config.block_size
+        tops.append((item.name, np.add(item.position_world, [0.0, 0.0, 0.5 * item.size[2]])))
+        reach[item.name] = 0.5 * item.size[2]
     relations = set()
     for item in objects:
-        bottom = np.array(item.position_world) - [0, 0, 0.5 * config.block_size]
+        bottom = np.array(item.position_world) - [0, 0, 0.5 * item.size[2]]
         for below, top in tops:
             offset = bottom - top
             touches = below != item.name and abs(offset[2]) < _HEIGHT_TOLERANCE
             if touches and np.abs(offset[:2]).max() < reach[below]:
                 relations.add(Relation(item.name, UP, below))
                 break
-    places = tuple(Place(i, base) for i, base in enumerate(config.stack_positions))
+    places = tuple(Place(i, base) for i, base in enumerate(positions))
     return SceneGraph(tuple(objects), frozenset(relations), places)
 
 
@@ -80,7 +91,7 @@ def standing_blocks(graph: SceneGraph) -> tuple[Stacks, tuple[str, ...]]:
     return tuple(stacks), tuple(sorted(set(graph.names) - standing))
 
 
-def _base_reach(positions: tuple[tuple[float, float, float], ...]) -> float:
+def _base_reach(positions: Sequence[Point]) -> float:
     """Half the distance of neighbouring places [m]: the share of the table that is a base's."""
     gaps = [np.linalg.norm(np.subtract(a, b)) for a, b in itertools.pairwise(positions)]
     return 0.4 * float(min(gaps, default=0.2))
