@@ -140,7 +140,9 @@ class Judged:
     def _kept(self, kind: str, find: Callable[[], dict[str, Any]]) -> dict[str, Any]:
         file = self.folder / f"{self.seed}.{kind}.json"
         if not file.exists():
-            file.write_text(json.dumps(find(), indent=1))
+            part = file.with_suffix(".part")
+            part.write_text(json.dumps(find(), indent=1))
+            part.replace(file)
         return dict(json.loads(file.read_text()))
 
 

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Final
+from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -164,7 +165,7 @@ def load_recording(path: Path) -> Recording:
             return _recording(arrays)
     except RecordingError as error:
         raise RecordingError(f"{path}: {error}") from None
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, EOFError, BadZipFile, ValueError, KeyError, TypeError) as error:
         raise RecordingError(
             f"{path} is no recording ({type(error).__name__}: {error}); remove it, and it is made "
             "anew"
