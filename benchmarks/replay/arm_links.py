@@ -142,6 +142,8 @@ def bodies_in(world: World) -> tuple[Body, ...]:
             body, physicsClientId=world.client
         )
         dynamics = pybullet.getDynamicsInfo(body, -1, physicsClientId=world.client)
+        if dynamics[0] > 0.0 and body not in names:
+            raise RecordingError(f"{name} can be moved and is no block; the replay has only blocks")
         friction = (dynamics[1], dynamics[7], dynamics[6])
         bodies.append(Body(name, kind, tuple(extents), dynamics[0], friction, position, quaternion))
     return tuple(bodies)

@@ -91,7 +91,7 @@ def test_motors_do_what_the_urdf_allows(world: World, model: ElementTree.Element
 
 
 def test_blocks_have_their_shape_mass_and_pose(world: World, model: ElementTree.Element) -> None:
-    half = 0.5 * world.config.block_size
+    half = 0.0225
     for name, shape, size in (
         ("red_box", "box", [half] * 3),
         ("green_cylinder", "cylinder", [half] * 2),
@@ -104,7 +104,7 @@ def test_blocks_have_their_shape_mass_and_pose(world: World, model: ElementTree.
         assert body.find("freejoint") is not None
         assert geom.attrib["type"] == shape
         assert numbers(geom, "size") == pytest.approx(size)
-        assert float(geom.attrib["mass"]) == world.config.block_mass
+        assert float(geom.attrib["mass"]) == 0.08
         assert numbers(body, "pos") == pytest.approx(world.block_pose(name)[0])
 
 
