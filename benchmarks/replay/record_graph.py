@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import threading
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sensor_msgs.msg import JointState
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_runtime.messages.scene_graph import graph_from_message
-from tamp_runtime.messages.stamps import seconds
+from tamp_runtime.messages.stamps import nanoseconds, seconds
 from tamp_runtime.node_thread import NodeThread
 from tamp_runtime.qos import LATCHED, RELIABLE, SENSOR_DATA
 from trajectory_msgs.msg import JointTrajectory
@@ -37,6 +37,22 @@ Array = NDArray[np.float64]
 
 #: A scene that is farther from the one that its seed means is another one [m].
 _SAME_SCENE: Final = 0.001
+#: Between joint states that are farther apart nobody knows where the hand was [s].
+_JOINTS_GAP: Final = 0.05
+
+
+@dataclass(frozen=True)
+class Heard:
+    """Messages of one task.
+
+    Attributes:
+        truths, states: in the order of their arrival.
+        trajectories: each with its stamp, or the simulated time at which it arrived [s].
+    """
+
+    truths: tuple[SceneGraphMsg, ...]
+    states: tuple[JointState, ...]
+    trajectories: tuple[tuple[float, JointTrajectory], ...]
 
 
 class TopicRecorder:
@@ -78,55 +94,10 @@ class TopicRecorder:
                         f"sim_node publishes no ground truth within {timeout:g} s"
                     )
 
-    def recording(
-        self, bodies: tuple[Body, ...], joints: tuple[str, ...], step: float, **about: Any
-    ) -> Recording:
-        """What has passed since :meth:`begin`.
-
-        Args:
-            bodies: of the scene; their poses are replaced by the first ground truth.
-            joints: names, in the recording's order.
-            step: of the controller [s].
-            about: what else a recording has to say.
-        """
+    def heard(self) -> Heard:
+        """What has passed since :meth:`begin`."""
         with self._news:
-            truths, states = list(self._truths), list(self._states)
-            trajectories = list(self._trajectories)
-        zero = seconds(truths[0].header.stamp)
-        names = tuple(body.name for body in bodies if body.mass > 0.0)
-        at = np.array([seconds(state.header.stamp) - zero for state in states])
-        positions = np.array([_ordered(state, joints) for state in states])
-        times = np.array([seconds(truth.header.stamp) - zero for truth in truths])
-        graphs = [graph_from_message(truth) for truth in truths]
-        trace = Trace(
-            times,
-            np.array([np.interp(times, at, column) for column in positions.T]).T,
-            np.array([_poses(graph, names) for graph in graphs]),
-            names,
-        )
-        commands = []
-        for heard, message in trajectories:
-            since, points, rates = trajectory_arrays(message)
-            if message.points:
-                order = [message.joint_names.index(name) for name in joints]
-                points = points[:, order]
-                rates = None if rates is None else rates[:, order]
-                began = beginning(heard - zero, since, points, at, positions, step)
-            else:
-                began = max(heard - zero, 0.0)
-            commands.append(Command(began, since, points, rates))
-        commands.sort(key=lambda command: command.begins)
-        relations = sorted((r.subject, r.predicate, r.object) for r in graphs[-1].relations)
-        return Recording(
-            source="graph",
-            joints=joints,
-            bodies=tuple(_placed(body, graphs[0]) for body in bodies),
-            start=positions[0],
-            commands=tuple(commands),
-            trace=trace,
-            relations=tuple(relations),
-            **about,
-        )
+            return Heard(tuple(self._truths), tuple(self._states), tuple(self._trajectories))
 
     def _on_truth(self, message: SceneGraphMsg) -> None:
         with self._news:
@@ -144,6 +115,59 @@ class TopicRecorder:
             if not stamp and self._states:
                 stamp = seconds(self._states[-1].header.stamp)
             self._trajectories.append((stamp, message))
+
+
+def recording_of(
+    heard: Heard, bodies: tuple[Body, ...], joints: tuple[str, ...], step: float, **about: Any
+) -> Recording:
+    """A recording of what was heard; it begins with the first ground truth.
+
+    Args:
+        bodies: of the scene; blocks are where that ground truth has them.
+        joints: names, in the recording's order.
+        step: of the controller [s].
+        about: what else a recording has to say.
+
+    Raises:
+        RecordingError: a block is not where ``bodies`` has it.
+    """
+    truths, states = list(heard.truths), heard.states
+    zero = seconds(truths[0].header.stamp)
+    names = tuple(body.name for body in bodies if body.mass > 0.0)
+    at = np.array([seconds(state.header.stamp) - zero for state in states])
+    positions = np.array([_ordered(state, joints) for state in states])
+    truths = [truths[0], *(t for t in truths[1:-1] if _known(t, at + zero)), truths[-1]]
+    times = np.array([seconds(truth.header.stamp) - zero for truth in truths])
+    graphs = [graph_from_message(truth) for truth in truths]
+    trace = Trace(
+        times,
+        np.array([np.interp(times, at, column) for column in positions.T]).T,
+        np.array([_poses(graph, names) for graph in graphs]),
+        names,
+    )
+    commands = []
+    for stamp, message in heard.trajectories:
+        since, points, rates = trajectory_arrays(message)
+        if message.points:
+            order = [message.joint_names.index(name) for name in joints]
+            points = points[:, order]
+            rates = None if rates is None else rates[:, order]
+        began = max(stamp - zero, 0.0)
+        if message.points and not nanoseconds(message.header.stamp):
+            began = beginning(began, since, points, at, positions, step)
+        commands.append(Command(began, since, points, rates))
+    commands.sort(key=lambda command: command.begins)
+    relations = sorted((r.subject, r.predicate, r.object) for r in graphs[-1].relations)
+    return Recording(
+        source="graph",
+        joints=joints,
+        bodies=tuple(_placed(body, graphs[0]) for body in bodies),
+        start=positions[0],
+        commands=tuple(commands),
+        trace=trace,
+        relations=tuple(relations),
+        **about,
+    )
 
 
 def record_task(
@@ -169,7 +193,8 @@ def record_task(
     recorder.begin()
     goal = goal_text(random_goal(initial.names, seed))
     result = run_task(planner, observer, initial, goal, check_alive=processes.check)
-    return recorder.recording(
+    return recording_of(
+        recorder.heard(),
         bodies_in(world),
         world.arm.joints,
         world.timestep,
@@ -179,6 +204,13 @@ def record_task(
         robot=world.arm.name,
         places=world.config.stack_positions,
     )
+
+
+def _known(truth: SceneGraphMsg, stamps: Array) -> bool:
+    """Whether joint states are known close to a ground truth: on a busy machine some get lost."""
+    stamp = seconds(truth.header.stamp)
+    after = int(np.searchsorted(stamps, stamp))
+    return 0 < after < len(stamps) and stamps[after] - stamps[after - 1] < _JOINTS_GAP
 
 
 def _placed(body: Body, graph: SceneGraph) -> Body:
