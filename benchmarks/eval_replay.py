@@ -7,7 +7,8 @@ commands. What holds in one physics engine only is luck.
 
 SOURCE=graph (default) executes with the four running nodes; SOURCE=process with planners,
 simulator and controller in one process: quicker, and the same every time. RESUME=1 keeps what was
-recorded and judged before; SEED=1007 runs one task again and says all about it.
+recorded and judged before; SEED=1007 judges one task's recording again, after executing the task
+where there is none, and says all about it.
 """
 
 from __future__ import annotations
@@ -179,13 +180,17 @@ def judge_all(options: argparse.Namespace, folder: Path) -> dict[str, list[dict[
 def parse_options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--n", type=int, default=100, help="number of tasks")
-    parser.add_argument("--blocks", type=int, default=6, help="blocks in each task, 3 to 7")
+    parser.add_argument(
+        "--blocks", type=int, default=6, choices=range(3, 8), help="blocks in each task"
+    )
     parser.add_argument("--source", choices=("graph", "process"), default="graph")
     parser.add_argument("--real-time-factor", type=float, default=1.0)
     parser.add_argument("--resume", action="store_true", help="keep what was done so far")
     parser.add_argument("--first-seed", type=int, default=FIRST_SEED, help="below 1000: to develop")
     parser.add_argument("--seed", type=int, help="one task again; nothing is published")
     options = parser.parse_args()
+    if options.n < 1:
+        parser.error(f"--n {options.n}: at least one task is needed")
     options.controls = CONTROLS
     if quick():
         options.n, options.controls = min(options.n, 2), 1
@@ -194,15 +199,22 @@ def parse_options() -> argparse.Namespace:
     return options
 
 
+def mujoco_version() -> str:
+    """Of the engine that judged."""
+    import mujoco
+
+    return str(mujoco.__version__)
+
+
 def main() -> int:
     options = parse_options()
     folder = Path("runs") / f"eval_replay_{options.blocks}_{options.source}"
-    if options.seed is not None:
-        folder = folder / "again"
     folder.mkdir(parents=True, exist_ok=True)
-    if not options.resume:
-        for old in (*folder.glob("*.npz"), *folder.glob("*.json")):
-            old.unlink()
+    forgotten = [*folder.glob("*.npz"), *folder.glob("*.json")]
+    if options.seed is not None:
+        forgotten = [folder / f"{options.seed}.task.json"]
+    for old in () if options.resume else forgotten:
+        old.unlink(missing_ok=True)
     started = time.monotonic()
     try:
         provide_mujoco()
@@ -226,7 +238,7 @@ def main() -> int:
         return 0
     name = "replay" if options.blocks == 6 else f"replay_{options.blocks}"
     again = f"make eval-replay SEED={{seed}} BLOCKS={options.blocks} SOURCE={options.source}"
-    details = verdict_details(results["tasks"], again)
+    details = {"mujoco": mujoco_version(), **verdict_details(results["tasks"], again)}
     path = write_result(name, command, rows, time.monotonic() - started, details)
     print(f"written to {path}")
     return 0

@@ -26,6 +26,7 @@ from replay_scenes import (
     standing_blue,
     trace,
 )
+from write_results_page import section
 
 from scene_graph import up_relations
 from sim_node.layouts import random_layout
@@ -162,7 +163,12 @@ def test_tasks_in_which_nothing_was_executed_do_not_count_as_the_same() -> None:
 
 def test_each_difference_is_on_the_page_with_the_command_that_repeats_it() -> None:
     details = verdict_details(results_of(True, False)["tasks"], "make eval-replay SEED={seed}")
+    machine = {"cpu": "Some CPU", "cores": 2, "memory_gib": 24}
+    result: dict[str, Any] = {"name": "replay", "command": "make eval-replay", "commit": "abc1234"}
+    result |= {"date": "2026-01-31", "machine": machine, "rows": [], "details": details}
+    page = section(result, [])
     (line,) = differences_table(details["differences"])[4:]
+    assert line in page
     assert SLIPPED in line
     assert "`make eval-replay SEED=7`" in line
     assert "red_box up blue_box" in line
