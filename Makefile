@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-visual eval-tasks eval-faults bench-planner bench-sim results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-visual eval-tasks eval-faults eval-replay bench-planner bench-sim results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -48,6 +48,10 @@ eval-faults: setup  ## faults of every kind in every phase, and what becomes of 
 	@$(RUN) python benchmarks/eval_faults.py $(if $(ONLY),--only "$(ONLY)") $(if $(PHASE),--phase $(PHASE)) \
 	  $(if $(SEED),--seed $(SEED)) $(if $(TRIALS),--trials $(TRIALS)) $(if $(RTF),--real-time-factor $(RTF)) \
 	  $(if $(JOBS),--jobs $(JOBS)) $(if $(RESUME),--resume) $(ARGS)
+
+eval-replay: setup  ## executed tasks once more in MuJoCo; N= BLOCKS= SOURCE=graph|process RTF= SEED= RESUME=1 QUICK=1
+	@$(RUN) python benchmarks/eval_replay.py $(if $(N),--n $(N)) $(if $(BLOCKS),--blocks $(BLOCKS)) $(if $(SOURCE),--source $(SOURCE)) \
+	  $(if $(RTF),--real-time-factor $(RTF)) $(if $(SEED),--seed $(SEED)) $(if $(RESUME),--resume) $(ARGS)
 
 bench-sim: setup  ## time of pictures and of the whole graph, pictures against the physics' rays; QUICK=1
 	@$(RUN) python benchmarks/bench_sim.py

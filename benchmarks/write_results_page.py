@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from replay.report import differences_table
 from result_plots import plot_result
 from results_file import RESULTS_FOLDER
 
@@ -130,6 +131,8 @@ def section(result: Mapping[str, Any], plots: Sequence[str]) -> list[str]:
         lines += ["", *numbered_table(numbered)]
     if entries := details.get("dictionary"):
         lines += ["", *dictionary_table(entries)]
+    if differences := details.get("differences"):
+        lines += ["", *differences_table(differences)]
     return lines
 
 
