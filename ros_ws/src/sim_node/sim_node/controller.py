@@ -87,7 +87,7 @@ class ArmController:
         step = self._world.steps - self._begins
         if not 0 <= step - self._first_target < len(self._targets):
             self._first_target = step
-            times = np.arange(step, step + _AHEAD) * self._world.timestep
+            times = np.arange(step, step + _AHEAD, dtype=np.float64) * self._world.timestep
             self._targets = list(zip(*self._trajectory.samples(times)))
         return self._targets[step - self._first_target]
 
