@@ -72,7 +72,7 @@ class Publications:
             camera.deliver(self.now)
             if round(60 * self.now) % 6 == 0:
                 stamp = stamp_from_nanoseconds(round(1e9 * self.now))
-                camera.take(self.render, CAMERA, stamp, self.now)
+                camera.take(self.render, stamp, self.now)
             self.now += 1 / 60
 
     def of(self, topic: str) -> list[tuple[float, Any]]:
@@ -84,7 +84,7 @@ class Publications:
 
 
 def camera_of(publications: Publications, sensor: SensorConfig) -> CameraTopics:
-    return CameraTopics(cast(Node, publications), sensor)
+    return CameraTopics(cast(Node, publications), sensor, CAMERA)
 
 
 def seconds(stamp: Time) -> float:
@@ -190,7 +190,7 @@ def test_every_camera_has_errors_of_its_own() -> None:
     publications = Publications()
     left = noisy_pictures(publications, camera_of(publications, noise), seed=3)
     publications = Publications()
-    second = CameraTopics(cast(Node, publications), noise, number=1)
+    second = CameraTopics(cast(Node, publications), noise, CAMERA, number=1)
     assert not set(noisy_pictures(publications, second, seed=3)) & set(left)
 
 

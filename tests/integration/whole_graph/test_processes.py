@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import resource
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -48,3 +50,20 @@ def test_any_node_can_be_stopped_and_started_again_and_the_graph_still_works(
     assert graph.stop_all() == dict.fromkeys(NODES, 0)
     for node in NODES:
         assert "Traceback" not in (tmp_path / "logs" / f"{node}.log").read_text()
+
+
+def children_seconds() -> float:
+    """CPU time of this process's children that have ended [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def test_the_cpu_time_of_a_node_is_that_of_its_process(domain_id: int, tmp_path: Path) -> None:
+    del domain_id
+    before, node = children_seconds(), "planner_node"
+    with NodeProcesses(tmp_path, nodes=(node,)) as processes:
+        while (used := processes.cpu_seconds()[node]) < 0.2:  # it imports its program
+            processes.check()
+            time.sleep(0.01)
+    assert set(processes.cpu_seconds()) == set()
+    assert used <= children_seconds() - before + 0.02  # a clock tick each

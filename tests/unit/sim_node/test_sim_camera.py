@@ -139,6 +139,7 @@ def test_bodies_that_look_as_others_did_get_the_surfaces_of_those(world: World) 
     pictures = [picture(world, seed) for seed in (3, 3)]
     made = surfaces._surface.cache_info()
     pictures.append(picture(world, 3))
-    assert surfaces._surface.cache_info().currsize == made.currsize <= made.maxsize
+    assert made.maxsize is not None  # worlds of ever new blocks fill no memory
+    assert surfaces._surface.cache_info().currsize == made.currsize
     assert surfaces._surface.cache_info().misses == made.misses
     assert all((pictures[0].rgb == other.rgb).all() for other in pictures[1:])

@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as some
 
 from sim_node.trajectory import JointLimits, Trajectory, TrajectoryError
 
@@ -44,6 +46,25 @@ def test_it_rests_after_its_end() -> None:
     position, velocity = make().sample(5.0)
     assert position == pytest.approx([0.8, 0.2])
     assert velocity == pytest.approx([0.0, 0.0])
+
+
+@given(
+    some.lists(some.floats(-1.0, 4.0) | some.sampled_from([0.0, 1.0, 2.0]), min_size=1),
+    some.sampled_from([1, 2, 3]),
+)
+def test_many_samples_at_once_are_those_one_by_one(times: list[float], points: int) -> None:
+    whole = make()
+    part = make(
+        times=np.array([0.0, 1.0, 2.0])[:points],
+        positions=np.array([[0.0, 0.0], [0.5, 0.1], [0.8, 0.2]])[:points],
+        velocities=None,
+    )
+    for trajectory in (whole, part):
+        positions, velocities = trajectory.samples(np.array(times))
+        for index, time in enumerate(times):
+            position, velocity = trajectory.sample(time)
+            assert (positions[index] == position).all()
+            assert (velocities[index] == velocity).all()
 
 
 def test_without_velocities_it_starts_and_ends_at_rest() -> None:

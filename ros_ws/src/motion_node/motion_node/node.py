@@ -22,6 +22,7 @@ from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.presence import Presence
 from tamp_runtime.qos import LATCHED, RELIABLE, SENSOR_DATA, STATUS
+from tamp_runtime.stream_thread import StreamThread
 from trajectory_msgs.msg import JointTrajectory
 
 from .conversions import joint_positions, plan_from_message, trajectory_to_message
@@ -101,10 +102,10 @@ class MotionNode(Node):
         self._worker = PlanWorker(
             executive, condition, self._publish, self._on_defect, self._presence.conflict
         )
-        streams, plans = MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()
+        plans = MutuallyExclusiveCallbackGroup()
         descriptions = MutuallyExclusiveCallbackGroup()  # problems are built there for seconds
-        self.create_subscription(
-            JointState, "joint_states", self._on_joint_state, SENSOR_DATA, callback_group=streams
+        self._joint_states = StreamThread.subscribe(
+            self, JointState, "joint_states", self._on_joint_state, SENSOR_DATA
         )
         self.create_subscription(
             String, "robot_description", self._on_description, LATCHED, callback_group=descriptions
@@ -124,6 +125,7 @@ class MotionNode(Node):
 
     def destroy_node(self) -> None:
         """The running trajectory goes on: it ends at home with an empty hand, if it is not cut."""
+        self._joint_states.stop()
         self._states.close()
         self._worker.close(timeout=2.0)
         super().destroy_node()

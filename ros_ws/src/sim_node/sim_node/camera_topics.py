@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Final
 
 from builtin_interfaces.msg import Time
@@ -13,11 +14,11 @@ from sensor_msgs.msg import CameraInfo, Image
 from tamp_runtime.qos import LATCHED, NEWEST, SENSOR_DATA
 
 from .conversions import camera_messages, extrinsics_message
+from .frame import Frame
 from .scene import CameraConfig
 from .sensor import Delivery, SensorConfig, is_lost, sense
 from .sensor.config import OFF
 from .sensor.sensor import DELIVERY, stage_random
-from .world import World
 
 #: In the order of :func:`~sim_node.conversions.camera_messages`.
 _TOPICS: Final = (
@@ -70,11 +71,12 @@ class CameraTopics:
         self._extrinsics.publish(transform)
         return transform
 
-    def take(self, world: World, stamp: Time) -> None:
+    def take(self, render: Callable[[], Frame], stamp: Time, now: float) -> None:
         """Takes a picture, if anybody wants it, and sends it on its way.
 
         Args:
-            stamp: for subscribers, the time that it is in the world.
+            render: what the camera sees, exactly.
+            now: simulated time [s]; ``stamp`` is the same for subscribers.
         """
         # Pictures that nobody wants count, so that errors do not depend on who listens when.
         picture = (self._seed, self._number, self._count)
@@ -84,7 +86,7 @@ class CameraTopics:
         config, random = self._sensor.delivery, stage_random(self._sensor, picture, DELIVERY)
         if is_lost(config.lost_pictures, random):
             return
-        frame = sense(world.render(self._number), self._sensor, picture)
+        frame = sense(render(), self._sensor, picture)
         messages = camera_messages(frame, self._camera, stamp, self._sensor.depth.encoding)
         sent = [
             (self._publishers[topic], message)
@@ -92,8 +94,8 @@ class CameraTopics:
             if not is_lost(config.lost_messages, random)
             and not (topic == _SEGMENTATION and self._sensor.segmentation.kind == OFF)
         ]
-        self._delivery.send(sent, world.time, config, random)
-        self.deliver(world.time)
+        self._delivery.send(sent, now, config, random)
+        self.deliver(now)
 
     def deliver(self, now: float) -> None:
         """Publishes what has come through by now, in simulated time [s]."""

@@ -4,12 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .trajectory import JointLimits, Trajectory, TrajectoryError
 from .world import World
+
+#: A trajectory is sampled for so many steps at once: one step alone costs 30 times its share.
+_AHEAD: Final = 60
 
 
 class ArmController:
@@ -20,6 +24,9 @@ class ArmController:
         self.limits = JointLimits(world.arm.joints, world.lower, world.upper, world.max_velocity)
         self._trajectory: Trajectory | None = None
         self._begins = 0
+        # For the steps from the first one, counted from the trajectory's beginning.
+        self._targets: list[tuple[NDArray[np.float64], NDArray[np.float64]]] = []
+        self._first_target = 0
         self._hold = self._world.arm.home_positions
 
     @property
@@ -55,6 +62,7 @@ class ArmController:
         if begins is not None and begins > now:
             self._hold_still()
         self._trajectory, self._begins = trajectory, now if begins is None else begins
+        self._targets, self._first_target = [], 0
         return trajectory
 
     def stop(self) -> None:
@@ -77,7 +85,12 @@ class ArmController:
         """Positions and velocities that the motors are told now, shapes (n,)."""
         if self._trajectory is None or self._elapsed < 0.0:
             return self._hold, np.zeros_like(self._hold)
-        return self._trajectory.sample(self._elapsed)
+        step = self._world.steps - self._begins
+        if not 0 <= step - self._first_target < len(self._targets):
+            self._first_target = step
+            times = np.arange(step, step + _AHEAD, dtype=np.float64) * self._world.timestep
+            self._targets = list(zip(*self._trajectory.samples(times)))
+        return self._targets[step - self._first_target]
 
     @property
     def _elapsed(self) -> float:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 from builtin_interfaces.msg import Time
 from rclpy.node import Node
@@ -71,8 +72,8 @@ class SimTopics:
 
     def publish_pictures(self, world: World, stamp: Time) -> None:
         """What the cameras see; drawn only if somebody wants it."""
-        for camera in self._cameras:
-            camera.take(world, stamp)
+        for number, camera in enumerate(self._cameras):
+            camera.take(partial(world.render, number), stamp, world.time)
 
     def configure(self, sensor: SensorConfig) -> None:
         """What is wrong with the cameras from now on."""

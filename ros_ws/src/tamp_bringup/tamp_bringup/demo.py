@@ -128,7 +128,7 @@ def run_demo(options: argparse.Namespace) -> TaskResult:
     parameters = {"sim_node": {"real_time_factor": float(options.real_time_factor)}}
     with (
         NodeProcesses(options.out / "logs", parameters) as processes,
-        SceneObserver() as observer,
+        SceneObserver(pictures=True) as observer,
         PlannerClient() as planner,
     ):
         print(f"start    four nodes; logs in {options.out / 'logs'}")

@@ -150,6 +150,16 @@ class NodeProcesses:
             if (code := process.poll()) is not None:
                 raise NodeDiedError(node, code, self._logs / f"{node}.log")
 
+    def cpu_seconds(self) -> dict[str, float]:
+        """CPU time that each node's process has used so far, by node [s] (Linux)."""
+        ticks = os.sysconf("SC_CLK_TCK")
+        used = {}
+        for node, process in self._processes.items():
+            # Behind the name in brackets, which may contain anything: proc(5), fields 14 and 15.
+            fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+            used[node] = (int(fields[11]) + int(fields[12])) / ticks
+        return used
+
     def _wait(self, node: str) -> int:
         process = self._processes.pop(node)
         try:

@@ -50,12 +50,17 @@ class SceneObserver:
     """Watches the simulator's ground truth, the camera and perception from a thread of its own.
 
     Attributes:
-        recording: receives the camera's images while it is set.
+        recording: receives the camera's images while it is set, with ``pictures``.
         graph_times: image → graph times of perception's newest graphs, whatever their status.
     """
 
-    def __init__(self, **node_arguments: Any) -> None:
-        """``node_arguments`` go to the node, for example ``namespace``."""
+    def __init__(self, pictures: bool = False, **node_arguments: Any) -> None:
+        """Subscribes at once.
+
+        Args:
+            pictures: whether the camera's images are wanted.
+            node_arguments: go to the node, for example ``namespace``.
+        """
         self._node = rclpy.create_node("scene_observer", **node_arguments)
         self._truth: SceneGraphMsg | None = None
         self._truth_count = 0
@@ -67,7 +72,8 @@ class SceneObserver:
         node = self._node
         node.create_subscription(SceneGraphMsg, "sim/ground_truth", self._on_truth, LATCHED)
         node.create_subscription(SceneGraphMsg, "scene_graph", self._on_graph, NEWEST)
-        node.create_subscription(Image, "camera/image_raw", self._on_image, NEWEST)
+        if pictures:
+            node.create_subscription(Image, "camera/image_raw", self._on_image, NEWEST)
         self._simulator = Neighbour(node, "sim_node")
         self._reset = node.create_client(ResetScene, "sim/reset")
         self._thread = NodeThread(node)
@@ -171,7 +177,7 @@ class SceneObserver:
         return 0.0 if message is None else seconds(message.header.stamp)
 
     def image(self) -> Any:
-        """The newest camera image, (height, width, 3) uint8, or None."""
+        """The newest camera image, (height, width, 3) uint8, or None; None without ``pictures``."""
         return None if self._image is None else array_from_image(self._image, "rgb8")
 
     def _wait(self, ready: Callable[[], bool], who: str, timeout: float) -> None:

@@ -55,7 +55,7 @@ def run_task(
                 planner.cancel()
                 failure = Failure("planner", f"not done after {timeout:g} s; cancelled")
                 break
-            if feedback := planner.next_feedback(timeout=0.2):
+            if feedback := planner.next_feedback(timeout=0.05):
                 on_feedback(feedback)
         result = planner.result(timeout=CANCEL_TIMEOUT)
     except (PlannerUnavailableError, TimeoutError) as error:

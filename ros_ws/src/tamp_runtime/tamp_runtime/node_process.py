@@ -22,6 +22,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from .orderly_executor import OrderlyExecutor
+from .stream_thread import StreamThread
 
 #: After how long a thread that computes passes the interpreter on to one that waits for it [s].
 SWITCH_INTERVAL: Final = 1e-4
@@ -71,8 +72,10 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
     threading.Thread(target=_end_in_time, args=[context], daemon=True).start()
     executor = OrderlyExecutor(threads)
     node: Node | None = None
+    clock: StreamThread | None = None
     try:
         node = make_node()
+        clock = StreamThread.of_clock(node)
         executor.add_node(node)
         interrupts.awaited = False
         if not interrupts.arrived:  # some library may have swallowed the exception
@@ -94,6 +97,8 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
         # Callbacks that run see the shutdown, and every wait in them has a timeout. It waits for
         # them: a node must not be destroyed under one.
         executor.shutdown()
+        if clock is not None:
+            clock.stop()
         if node is not None:
             node.destroy_node()
     return 0
