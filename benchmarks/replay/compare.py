@@ -167,7 +167,8 @@ def _cause(verdict: Verdict, held: tuple[Grasp, ...]) -> tuple[str, str]:
         if time < grasp.start:
             return TOUCHED, f"on the way to {grasp.block or 'a block'} in move {number}"
         if time <= grasp.end and block == grasp.block:
-            here, before = verdict.replayed_slips[number - 1], verdict.recorded_slips[number - 1]
+            slips = (verdict.replayed_slips[number - 1], verdict.recorded_slips[number - 1])
+            here, before = np.nan_to_num(slips)
             if max(here, before) < SLID:
                 return MISSED, carrying
             return (SLIPPED if here > before else SLIPPED_BEFORE), carrying
