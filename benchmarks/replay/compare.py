@@ -26,6 +26,7 @@ AFTERMATH: Final = 1.0
 
 REFUSED: Final = "a trajectory was refused"
 SLIPPED: Final = "slipped from the fingers"
+SLIPPED_BEFORE: Final = "slipped from the fingers in pybullet, and not in MuJoCo"
 MISSED: Final = "was not between the fingers"
 TOPPLED: Final = "fell after it was put down"
 PUSHED: Final = "was pushed by what was carried"
@@ -166,9 +167,11 @@ def _cause(verdict: Verdict, held: tuple[Grasp, ...]) -> tuple[str, str]:
         if time < grasp.start:
             return TOUCHED, f"on the way to {grasp.block or 'a block'} in move {number}"
         if time <= grasp.end and block == grasp.block:
-            slid = verdict.replayed_slips[number - 1]
-            held_at_first = np.isfinite(slid) and slid < SLID
-            return (MISSED if held_at_first else SLIPPED), carrying
+            slips = (verdict.replayed_slips[number - 1], verdict.recorded_slips[number - 1])
+            here, before = np.nan_to_num(slips)
+            if max(here, before) < SLID:
+                return MISSED, carrying
+            return (SLIPPED if here > before else SLIPPED_BEFORE), carrying
         if time <= grasp.end:
             return PUSHED, carrying
         if time <= grasp.end + AFTERMATH:

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from replay.arm_links import bodies_in
-from replay.compare import PUSHED, SLIPPED, TOPPLED, TOUCHED, compare, relations_of
+from replay.compare import PUSHED, SLIPPED, SLIPPED_BEFORE, TOPPLED, TOUCHED, compare, relations_of
 from replay.grasps import Grasp, grasps, hand_poses, slip
 from replay.report import differences_table, make_rows, verdict_details
 from replay_scenes import (
@@ -132,6 +132,17 @@ def test_where_the_engines_part_is_said(
     assert verdict.parted_block in verdict.sentence
     assert ("red_box", "up", "blue_box") in verdict.missing
     assert verdict.final_deviation > 0.2
+
+
+def test_a_block_that_slipped_in_the_first_engine_only_is_told_from_one_in_the_second() -> None:
+    dropped = recording(
+        success=False,
+        trace=trace(red=falls(carried_red(), LIFT + 0.5, AWAY)),
+        relations=(("blue_box", "up", "stack1"),),
+    )
+    verdict = compare(dropped, trace())
+    assert verdict.cause == SLIPPED_BEFORE
+    assert verdict.extra == (("red_box", "up", "blue_box"),)
 
 
 def results_of(*sames: bool) -> dict[str, list[dict[str, Any]]]:
