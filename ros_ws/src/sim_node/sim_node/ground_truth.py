@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from scene_graph import (
     base_name,
     rotation_from_quaternion,
 )
+from scene_graph.places import Point
 
 from .world import World
 
@@ -28,19 +30,8 @@ _HEIGHT_TOLERANCE = 0.006
 
 
 def true_scene_graph(world: World) -> SceneGraph:
-    """Objects with true poses, and up-relations for the blocks that stand on something.
-
-    A block stands on another, or on a base, if its bottom touches the other's top and its centre
-    is above it. A block that stands on nothing (in the hand, fallen over between two places) has
-    no relation, so the graph is then no complete state.
-    """
-    config = world.config
-    objects, bottoms = [], []
-    tops = [(base_name(i), np.array(base)) for i, base in enumerate(config.stack_positions)]
-    reach: dict[str, float | NDArray[np.float64]] = {
-        base_name(i): _base_reach(config.stack_positions) for i in range(config.stack_count)
-    }
-    turns = {base_name(i): np.eye(3) for i in range(config.stack_count)}
+    """Objects with true poses, and up-relations for the blocks that stand on something."""
+    objects = []
     for name in sorted(world.names):
         position, quaternion = world.block_pose(name)
         block = world.block(name)
@@ -55,14 +46,35 @@ def true_scene_graph(world: World) -> SceneGraph:
                 world.label(name),
             )
         )
-        rotation = rotation_from_quaternion(quaternion)
+    return graph_of_poses(objects, world.config.stack_positions)
+
+
+def graph_of_poses(objects: Sequence[SceneObject], positions: Sequence[Point]) -> SceneGraph:
+    """The scene graph of blocks whose poses are known, wherever they come from.
+
+    A block stands on another, or on a base, if its bottom touches the other's top and its centre
+    is above it. A block that stands on nothing (in the hand, fallen over between two places) has
+    no relation, so the graph is then no complete state.
+
+    Args:
+        objects: with shapes, poses and sizes.
+        positions: of the places on the table [m].
+    """
+    tops = [(base_name(i), np.array(base)) for i, base in enumerate(positions)]
+    reach: dict[str, float | NDArray[np.float64]] = {
+        base_name(i): _base_reach(positions) for i in range(len(positions))
+    }
+    turns = {base_name(i): np.eye(3) for i in range(len(positions))}
+    bottoms = []
+    for item in objects:
+        rotation = rotation_from_quaternion(item.quaternion_world)
         vertical = int(np.abs(rotation[2]).argmax())
-        half = 0.5 * np.array(block.size)
-        bottoms.append(np.array(position) - [0.0, 0.0, half[vertical]])
-        if block.shape == BOX or (block.shape in FLAT_TOPPED and vertical == 2):
+        half = 0.5 * np.array(item.size)
+        bottoms.append(np.array(item.position_world) - [0.0, 0.0, half[vertical]])
+        if item.shape == BOX or (item.shape in FLAT_TOPPED and vertical == 2):
             across = [axis for axis in range(3) if axis != vertical]
-            tops.append((name, np.add(position, [0.0, 0.0, half[vertical]])))
-            reach[name], turns[name] = half[across], rotation[:, across].T
+            tops.append((item.name, np.add(item.position_world, [0.0, 0.0, half[vertical]])))
+            reach[item.name], turns[item.name] = half[across], rotation[:, across].T
     relations = set()
     for item, bottom in zip(objects, bottoms):
         for below, top in tops:
@@ -71,7 +83,7 @@ def true_scene_graph(world: World) -> SceneGraph:
             if touches and (np.abs(turns[below] @ offset)[:2] < reach[below]).all():
                 relations.add(Relation(item.name, UP, below))
                 break
-    places = tuple(Place(i, base) for i, base in enumerate(config.stack_positions))
+    places = tuple(Place(i, base) for i, base in enumerate(positions))
     return SceneGraph(tuple(objects), frozenset(relations), places)
 
 
@@ -90,7 +102,7 @@ def standing_blocks(graph: SceneGraph) -> tuple[Stacks, tuple[str, ...]]:
     return tuple(stacks), tuple(sorted(set(graph.names) - standing))
 
 
-def _base_reach(positions: tuple[tuple[float, float, float], ...]) -> float:
+def _base_reach(positions: Sequence[Point]) -> float:
     """How far from its centre the table is a base's: two fifths of the least distance [m]."""
     gaps = [np.linalg.norm(np.subtract(a, b)) for a, b in itertools.combinations(positions, 2)]
     return 0.4 * float(min(gaps, default=0.2))
