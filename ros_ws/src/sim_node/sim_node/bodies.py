@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scene_graph import BOX, COLORS, CYLINDER, PRISM, SPHERE
 
 from .scene import Block, Obstacle
+from .scene.blocks import centre_above_body
 from .scene.obstacles import TRAY, TRAY_WALL
 from .scene.table import TABLE_LOWER, TABLE_UPPER
 
@@ -87,7 +88,7 @@ def create_obstacle(client: int, item: Obstacle) -> int:
         collision = _collision(client, item.shape, item.size)
         visual = _visual(client, item.shape, item.size, item.color)
     x, y, z = item.position_world
-    below = item.size[2] / 6.0 if item.shape == PRISM else 0.0
+    below = centre_above_body(item.shape, item.size)
     body = pybullet.createMultiBody(
         item.mass,
         collision,

@@ -57,15 +57,15 @@ def graph_of_poses(objects: Sequence[SceneObject], positions: Sequence[Point]) -
     no relation, so the graph is then no complete state.
 
     Args:
-        objects: with poses and sizes.
+        objects: with shapes, poses and sizes.
         positions: of the places on the table [m].
     """
-    bottoms = []
     tops = [(base_name(i), np.array(base)) for i, base in enumerate(positions)]
     reach: dict[str, float | NDArray[np.float64]] = {
         base_name(i): _base_reach(positions) for i in range(len(positions))
     }
     turns = {base_name(i): np.eye(3) for i in range(len(positions))}
+    bottoms = []
     for item in objects:
         rotation = rotation_from_quaternion(item.quaternion_world)
         vertical = int(np.abs(rotation[2]).argmax())

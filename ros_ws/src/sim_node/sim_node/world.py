@@ -34,7 +34,7 @@ class World:
         arm: which arm it is; arrays over its n joints are in the order of ``arm.joints``.
         timestep: of the physics [s].
         steps: of the physics since the world was made.
-        seed: of the last reset.
+        seed: of the present scene; ``config.blocks.block(name, seed)`` is what a block is like.
         client, robot, table: pybullet's ids of the physics server and of two of its bodies.
         obstacles: those of what stands around and is no block, by name.
         joint_indices: pybullet's numbers of the arm's joints, n of them.
@@ -107,6 +107,7 @@ class World:
         config = self.config
         check_layout(layout, config.stack_count, config.blocks, seed)
         self._build()
+        self.seed = seed
         rng = np.random.default_rng(seed)
         for stack, base in zip(layout, config.stack_positions):
             below: list[float] = []

@@ -70,6 +70,14 @@ def read_edges(data: object, key: str) -> Size:
     return (edge, edge, edge)
 
 
+def centre_above_body(shape: str, size: Size) -> float:
+    """Height of the middle of something's extents above its centre of mass [m].
+
+    A prism of height h has its centre of mass at h / 3.
+    """
+    return size[2] / 6.0 if shape == PRISM else 0.0
+
+
 _Edges = Annotated[Size, ReadBy(read_edges), Within(LEAST_EDGE, MOST_EDGE, "m")]
 _Mass = Within(0.005, 2.0, "kg")
 _Friction = Within(0.05, 2.0)
@@ -98,7 +106,7 @@ class Block:
     @property
     def centre_above_body(self) -> float:
         """Height of the middle of its extents above its centre of mass, when it is upright [m]."""
-        return self.size[2] / 6.0 if self.shape == PRISM else 0.0
+        return centre_above_body(self.shape, self.size)
 
 
 @dataclass(frozen=True)
