@@ -6,7 +6,8 @@ three, four, five, six and seven blocks in the plain world (BLOCKS=6 means six),
 tasks have a scene each. Ctrl-C stops when the running task has ended; a second one, or a kill,
 interrupts it, and it counts as failed. RESUME=1 goes on with the tasks that have not begun:
 nothing is run twice. JOBS=2 runs two graphs side by side; times are then those of a busy machine.
-SEED= runs a task again and shows its record; nothing goes into benchmarks/results then.
+SEED= runs a task again and shows its record; nothing goes into benchmarks/results then. What a
+failed task needs to be run again, and what it left behind, is in runs/eval_tasks_NAME/SEED.
 BASELINE=FOLDER times another checkout's code on the same tasks in turns.
 """
 
@@ -114,7 +115,9 @@ def parse_arguments() -> tuple[argparse.Namespace, Family]:
     parser.add_argument("--n", type=int, help="number of tasks; 20, or with --seed 1")
     parser.add_argument("--blocks", type=int, help="the plain family of so many blocks, 3 to 7")
     parser.add_argument("--seed", type=int, help="run this task, and publish nothing")
-    parser.add_argument("--real-time-factor", type=float, default=1.0, help="0: as fast as it goes")
+    parser.add_argument(
+        "--real-time-factor", type=float, help="0: as fast as it goes; 1, in a quick run 0"
+    )
     parser.add_argument("--resume", action="store_true", help="keep the tasks done so far")
     parser.add_argument("--baseline", type=Path, help="another checkout, set up, to time in turns")
     parser.add_argument("--baseline-n", type=int, default=10, help="tasks that it runs")
@@ -135,6 +138,8 @@ def parse_arguments() -> tuple[argparse.Namespace, Family]:
         parser.error("N and JOBS have to be 1 or more")
     if quick():
         options.n = min(options.n, 2)
+    if options.real_time_factor is None:
+        options.real_time_factor = 0.0 if quick() else 1.0
     return options, family
 
 
@@ -158,9 +163,9 @@ def run(
         campaign.run(side_by_side.share_of(seeds, options), seeds)
         return None
     with records.lock() as lock:
-        if single or not options.resume:
+        if not options.resume:
             records.forget()
-        else:
+        elif not single:
             check_same_tasks(records, family, seeds)
         for seed in records.interrupt_all_begun():
             print(f"task {seed} was interrupted while it ran; it counts as failed")

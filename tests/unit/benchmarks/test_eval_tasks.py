@@ -128,6 +128,8 @@ def test_a_quick_run_has_two_tasks_and_a_file_of_its_own(
     assert call(monkeypatch, "--n", "200") == 0
     assert result_files(here) == ["tasks_6.quick.json"]
     assert Records(here / "runs" / "eval_tasks_6").seeds() == [1000, 1001]
+    quick = json.loads((here / "results" / "tasks_6.quick.json").read_text())
+    assert quick["command"] == "make eval-tasks FAMILY=six N=2 RTF=0"
 
 
 def test_a_campaign_that_goes_on_keeps_what_is_there(
