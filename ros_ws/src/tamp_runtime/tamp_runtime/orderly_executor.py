@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import threading
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+from typing import Any, Final
 
 from rclpy.context import Context
 from rclpy.executors import (
@@ -15,6 +15,10 @@ from rclpy.executors import (
     ShutdownException,
     TimeoutException,
 )
+
+#: A callback has this long to end before the next one is looked for [s]. Most have ended by then,
+#: and all that the node has is looked at once for each of them, instead of two or three times.
+_HEAD_START: Final = 0.001
 
 
 class OrderlyExecutor(Executor):
@@ -48,7 +52,9 @@ class OrderlyExecutor(Executor):
                 return
             raise
         self._started.append(task)
-        self._threads.submit(self._run, task)
+        ended = threading.Event()
+        self._threads.submit(self._run, task, ended)
+        ended.wait(_HEAD_START)
         for task in [task for task in self._started if task.done()]:
             self._started.remove(task)
             task.result()
@@ -65,8 +71,9 @@ class OrderlyExecutor(Executor):
         self._started.clear()
         return super().shutdown(timeout_sec)
 
-    def _run(self, task: Any) -> None:
+    def _run(self, task: Any, ended: threading.Event) -> None:
         try:
             task()
         finally:
             self._free.release()
+            ended.set()
