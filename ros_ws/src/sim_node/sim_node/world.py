@@ -122,7 +122,6 @@ class World:
                 self._blocks[name] = block
                 below.append(block.size[2])
         shuffled = rng.permutation(len(self._bodies)) + 1
-        self.seed = seed
         self._labels |= {name: int(label) for name, label in zip(self._bodies, shuffled)}
         for _ in range(round(settle_time / self.timestep)):
             self.step()
