@@ -15,9 +15,10 @@ from __future__ import annotations
 
 import argparse
 import json
+import signal
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -147,25 +148,33 @@ class Judged:
         return dict(json.loads(file.read_text()))
 
 
+def record_all(
+    options: argparse.Namespace, world: World, seeds: Sequence[int], folder: Path
+) -> None:
+    """Executes the tasks that are not recorded yet; a running graph would slow the judge down."""
+    missing = [seed for seed in seeds if not (folder / f"{seed}.npz").exists()]
+    if not missing:
+        return
+    source = (
+        recorder_in_process(world, options)
+        if options.source == "process"
+        else recorder_of_graph(world, options, folder)
+    )
+    with source as record:
+        for seed in tqdm(missing, "executing", unit="task"):
+            record(seed).save(folder / f"{seed}.npz")
+
+
 def judge_all(options: argparse.Namespace, folder: Path) -> dict[str, list[dict[str, Any]]]:
     """Verdicts of all tasks, and of the controls; what is in ``folder`` is not done again."""
     seeds = range(options.first_seed, options.first_seed + options.n)
     results: dict[str, list[dict[str, Any]]] = {"tasks": [], "still": [], "weak": []}
-    with World() as world, ExitStack() as stack:
-        source = (
-            recorder_in_process(world, options)
-            if options.source == "process"
-            else recorder_of_graph(world, options, folder)
-        )
-        record, judge = stack.enter_context(source), Judge(world)
-        progress = tqdm(seeds, unit="task")
+    with World() as world:
+        record_all(options, world, seeds, folder)
+        judge = Judge(world)
+        progress = tqdm(seeds, "judging", unit="task")
         for seed in progress:
-            path = folder / f"{seed}.npz"
-            recording = load_recording(path) if path.exists() else record(seed)
-            if not path.exists():
-                recording.save(path)
-
-            judged = Judged(folder, seed, recording, judge)
+            judged = Judged(folder, seed, load_recording(folder / f"{seed}.npz"), judge)
             results["tasks"].append(judged.task())
             if len(results["still"]) < options.controls:
                 results["still"].append(judged.still())
@@ -216,6 +225,8 @@ def main() -> int:
     for old in () if options.resume else forgotten:
         old.unlink(missing_ok=True)
     started = time.monotonic()
+    # Where a script put this into the background, SIGINT is ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         provide_mujoco()
         results = judge_all(options, folder)
