@@ -25,10 +25,10 @@ def plot_result(result: Mapping[str, Any], folder: Path) -> list[Path]:
     """Draws what a result file has details for; equal results give equal files.
 
     Returns:
-        The files written: ``NAME.svg`` where the details list tasks, else none.
+        The files written: ``NAME.svg`` where the details list timed tasks, else none.
     """
     tasks = (result.get("details") or {}).get("tasks")
-    if not tasks:
+    if not tasks or any("timing_s" not in task for task in tasks):
         return []
     figure = draw_tasks(tasks)
     folder.mkdir(parents=True, exist_ok=True)

@@ -125,6 +125,13 @@ def test_tasks_are_plotted_beside_the_page(results: Path, page: Path) -> None:
     assert (page.parent / "results" / "tasks_6.svg").read_text().lstrip().startswith("<?xml")
 
 
+def test_verdicts_on_tasks_that_were_not_timed_are_not_plotted(results: Path, page: Path) -> None:
+    write_result_file(results, "replay", details={"tasks": [{"seed": 1000, "same": True}]})
+    write_page(results, page)
+    assert "## replay" in page.read_text()
+    assert not (page.parent / "results" / "replay.svg").exists()
+
+
 def test_equal_results_give_equal_files(results: Path, page: Path) -> None:
     write_result_file(results, "tasks_6", details={"tasks": [task(1000)]})
     plot = page.parent / "results" / "tasks_6.svg"
