@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-visual eval-tasks eval-faults eval-replay bench-planner bench-sim results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-perception eval-visual eval-tasks eval-faults eval-replay bench-planner bench-sim results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -36,7 +36,11 @@ train-visual: setup  ## train the visual module G without labels; resumable
 	@$(RUN) ros2 run sim_node render_dataset --out data/states_5 --blocks 5
 	@$(RUN) ros2 run perception_node train_visual --data data/states_5 $(ARGS)
 
-eval-visual: setup  ## scene graph accuracy on unseen states; QUICK=1
+eval-perception: setup  ## graphs right, accepted and refused, set by set; SET= N= JOBS= RESUME=1 QUICK=1
+	@$(RUN) python benchmarks/eval_perception.py $(if $(SET),--set "$(SET)") $(if $(N),--n $(N)) \
+	  $(if $(JOBS),--jobs $(JOBS)) $(if $(RESUME),--resume) $(ARGS)
+
+eval-visual: setup  ## the visual module with masks given, on unseen states; QUICK=1
 	@$(RUN) python benchmarks/eval_visual.py $(ARGS)
 
 eval-tasks: setup  ## success from pixels to tower; FAMILY=six|seven|varied|… N= JOBS= RTF= RESUME=1 SEED= QUICK=1 BASELINE=, BLOCKS=6 is FAMILY=six

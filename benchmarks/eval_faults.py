@@ -27,7 +27,7 @@ from typing import Any, Final
 import rclpy
 import side_by_side
 from faults.catalogue import CATALOGUE, UnknownFaultError, faults_named
-from faults.fault import Fault, Phase
+from faults.fault import Fault, Parameters, Phase
 from faults.numbered import numbered_table, tests_that_name
 from faults.report import command_of, dictionary, make_rows, problems
 from faults.setting import Graph, Setting
@@ -66,9 +66,9 @@ class Task:
         return self.folder / f"{self.fault.name}_{self.phase.value}_{self.trial}.json"
 
     @property
-    def groups(self) -> tuple[str, ...]:
-        """The groups of relays that it needs."""
-        return tuple(sorted(groups_of(self.fault.topics)))
+    def graph(self) -> tuple[tuple[str, ...], Parameters]:
+        """The groups of relays and the nodes' parameters that it needs."""
+        return tuple(sorted(groups_of(self.fault.topics))), self.fault.parameters
 
 
 def seed_of(fault: Fault, trial: int) -> int:
@@ -93,7 +93,7 @@ def plan_tasks(
                 tasks.append(Task(fault, moment, trial, seed_of(fault, trial)))
             else:
                 tasks.append(Task(fault, moment, trial, seed, AGAIN))
-    return sorted(tasks, key=lambda task: task.groups)
+    return sorted(tasks, key=lambda task: task.graph)
 
 
 def run_tasks(tasks: Sequence[Task], real_time_factor: float, share: int = 0) -> None:
@@ -105,10 +105,10 @@ def run_tasks(tasks: Sequence[Task], real_time_factor: float, share: int = 0) ->
     left = [task for task in tasks if not task.path.exists()]
     folder, done = FOLDER / f"graph{share}", len(tasks) - len(left)
     with tqdm(total=len(tasks), initial=done, unit="trial", position=share) as progress:
-        for groups, alike in groupby(left, key=lambda task: task.groups):
+        for (groups, parameters), alike in groupby(left, key=lambda task: task.graph):
             waiting = list(alike)
             while waiting:
-                with Graph(folder, groups, real_time_factor) as setting:
+                with Graph(folder, groups, real_time_factor, parameters) as setting:
                     waiting = _until_poisoned(setting, waiting, progress)
 
 

@@ -2,12 +2,13 @@
 """``make eval-tasks FAMILY=six N=200``: random tasks of a family, from pixels to a tower.
 
 The four nodes run as processes; success is judged by the simulator's ground truth. Families:
-three, four, five, six and seven blocks in the plain world (BLOCKS=6 means six), and varied, whose
-tasks have a scene each. Ctrl-C stops when the running task has ended; a second one, or a kill,
-interrupts it, and it counts as failed. RESUME=1 goes on with the tasks that have not begun:
-nothing is run twice. JOBS=2 runs two graphs side by side; times are then those of a busy machine.
-SEED= runs a task again and shows its record; nothing goes into benchmarks/results then. What a
-failed task needs to be run again, and what it left behind, is in runs/eval_tasks_NAME/SEED.
+three, four, five, six and seven blocks in the plain world (BLOCKS=6 means six), disturbed, and
+varied, whose tasks have a scene each; varied_masks is the same with the masks of a detector.
+Ctrl-C stops when the running task has ended; a second one, or a kill, interrupts it, and it counts
+as failed. RESUME=1 goes on with the tasks that have not begun: nothing is run twice. JOBS=2 runs
+two graphs side by side; times are then those of a busy machine. SEED= runs a task again and shows
+its record; nothing goes into benchmarks/results then. What a failed task needs to be run again, and
+what it left behind, is in runs/eval_tasks_NAME/SEED.
 BASELINE=FOLDER times another checkout's code on the same tasks in turns.
 """
 

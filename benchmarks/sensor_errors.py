@@ -2,9 +2,10 @@
 """How perception answers each kind of error of the camera: a table on the screen, for developing.
 
 ``tools/in_workspace python benchmarks/sensor_errors.py`` renders 20 scenes of 3 to 7 blocks (seeds
-below 1000), damages each picture by ``sim_node.sensor``, interprets it with the default perception,
+below 1000), damages each picture by ``sim_node.sensor``, interprets it with masks from each source,
 and prints by error how many graphs were confident and right, confident and wrong, or refused, with
-the sentence given most often. ``--only depth`` picks errors by what their names contain.
+the sentence given most often. ``--only depth`` picks errors by what their names contain, and
+``--masks rgbd`` a source; errors of labels are tried only where labels are heard.
 """
 
 from __future__ import annotations
@@ -17,7 +18,15 @@ from typing import Final
 
 import numpy as np
 
-from perception_node import DEFAULT_WEIGHTS, Observation, Perception, PinholeCamera, load_weights
+from perception_node import (
+    DEFAULT_WEIGHTS,
+    Observation,
+    Perception,
+    PerceptionConfig,
+    PinholeCamera,
+    load_weights,
+)
+from perception_node.segment import SEGMENTATION_TOPIC, SEGMENTERS
 from scene_graph import GraphStatus, SceneGraph
 from sim_node import (
     ColorConfig,
@@ -103,7 +112,7 @@ def without_particulars(sentence: str) -> str:
     return re.sub(r"-?\d+(\.\d+)?", "N", sentence)
 
 
-def report(name: str, answers: list[tuple[GraphStatus, str, bool]]) -> str:
+def report(name: str, source: str, answers: list[tuple[GraphStatus, str, bool]]) -> str:
     """One row of the table."""
     confident = [right for status, _, right in answers if status is GraphStatus.CONFIDENT]
     refused = [status for status, _, _ in answers if status is not GraphStatus.CONFIDENT]
@@ -111,28 +120,39 @@ def report(name: str, answers: list[tuple[GraphStatus, str, bool]]) -> str:
     sentences = Counter(without_particulars(text) for _, text, _ in answers if text)
     often = "; ".join(f"{n}x {text}" for text, n in sentences.most_common(2))
     right = sum(confident)
-    return f"| {name} | {right} | {len(confident) - right} | {statuses} | {often} |"
+    return f"| {name} | {source} | {right} | {len(confident) - right} | {statuses} | {often} |"
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", default="", help="errors whose names contain this")
     parser.add_argument("--scenes", type=int, default=SCENES)
+    parser.add_argument("--masks", action="append", choices=list(SEGMENTERS), help="from where")
     options = parser.parse_args()
-    perception = Perception(load_weights(DEFAULT_WEIGHTS))
+    module = load_weights(DEFAULT_WEIGHTS)
+    perceptions = {
+        source: Perception(module, PerceptionConfig(mask_source=source))
+        for source in options.masks or SEGMENTERS
+    }
     configs = {name: config for name, config in CONFIGS.items() if options.only in name}
-    answers: dict[str, list[tuple[GraphStatus, str, bool]]] = {name: [] for name in configs}
+    answers: dict[tuple[str, str], list[tuple[GraphStatus, str, bool]]] = {
+        (name, source): []
+        for name, config in configs.items()
+        for source in perceptions
+        if source == SEGMENTATION_TOPIC or config.segmentation.is_exact
+    }
     with World() as world:
         for seed in range(options.scenes):
             world.reset(random_layout(seed, FEWEST + seed % (MOST - FEWEST + 1)), seed)
             exact, truth = world.render(), true_scene_graph(world)
-            for name, config in configs.items():
+            for (name, source), rows in answers.items():
+                config = configs[name]
                 frame = sense(exact, config, (seed, 0, 0))
-                status, message, graph = answer(perception, frame, config, world)
-                answers[name].append((status, message, same(graph, truth)))
-    print("| error | right | wrong | refused | sentences |\n|---|---|---|---|---|")
-    for name, rows in answers.items():
-        print(report(name, rows))
+                status, message, graph = answer(perceptions[source], frame, config, world)
+                rows.append((status, message, same(graph, truth)))
+    print("| error | masks | right | wrong | refused | sentences |\n|---|---|---|---|---|---|")
+    for (name, source), rows in answers.items():
+        print(report(name, source, rows))
     return 0
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A segmenter of your own: blocks found by saturated colour, no masks given.
+"""A segmenter of your own: blocks found by saturated colour alone.
 
 Anything with this signature can be given to ``Perception``; in the project itself a segmenter is a
 file in perception_node/segment/. This one is ten lines long and knows saturated blocks before a
@@ -21,11 +21,12 @@ from perception_node import (
     Segments,
     load_weights,
 )
+from perception_node.segment import Volume
 from sim_node import World, random_layout, true_scene_graph
 
 
-def segment_by_colour(observation: Observation) -> Segments:
-    """One segment for each connected region of one hue."""
+def segment_by_colour(observation: Observation, _volume: Volume | None) -> Segments:
+    """One segment for each connected region of one hue, wherever that is."""
     hue, saturation, _ = cv2.split(cv2.cvtColor(observation.rgb, cv2.COLOR_RGB2HSV))
     labels = np.zeros(hue.shape, np.uint16)
     coloured = saturation > 110

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A picture and its masks in, a scene graph out.
+"""A picture in, a scene graph out.
 
-    python examples/perceive_a_picture.py                          # renders one
-    python examples/perceive_a_picture.py scene.png labels.png     # yours
+    python examples/perceive_a_picture.py                          # renders one, with its depth
+    python examples/perceive_a_picture.py scene.png labels.png     # yours, with its masks
 
-Without depth and a calibrated camera the relations are left-relations, and there are no poses.
+With depth and a calibrated camera the blocks are found, and have poses. Without them the masks have
+to be given, and the relations are left-relations.
 """
 
 from __future__ import annotations
@@ -33,14 +34,14 @@ def from_files(image: str, labels: str) -> Observation:
 
 
 def from_simulator(seed: int = 3) -> Observation:
-    """What the simulated camera sees: colour, masks, depth, and where the camera is."""
+    """What the simulated camera sees: colour and depth, and where the camera is."""
     with World() as world:
         world.reset(random_layout(seed, blocks=5), seed)
         frame, config = world.render(), world.config.camera
     camera = PinholeCamera(
         config.intrinsics, config.world_from_optical, config.width, config.height
     )
-    return Observation(frame.rgb, frame.labels, frame.depth, camera)
+    return Observation(frame.rgb, depth=frame.depth, camera=camera)
 
 
 def main(arguments: list[str], out: Path = Path("runs")) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 if TYPE_CHECKING:
     from faults.setting import Setting
@@ -39,6 +39,8 @@ MOVING_PHASES: Final = (Phase.OPTIMISE, Phase.EXECUTE)
 
 #: Of each group of alternatives the sentence must hold one.
 Words = tuple[tuple[str, ...], ...]
+#: Parameters of nodes: node, name, value.
+Parameters = tuple[tuple[str, str, Any], ...]
 
 
 class Injection(Protocol):
@@ -74,6 +76,7 @@ class Fault:
         transient: it passes, so the goal must be reached.
         unseen: why no camera can tell, if a claim may be wrong under it.
         asker: who asks: a ``program``, or the ``command`` line client in a process of its own.
+        parameters: without which it would not matter; others are as people start the graph.
     """
 
     name: str
@@ -86,6 +89,7 @@ class Fault:
     transient: bool = False
     unseen: str = ""
     asker: str = "program"
+    parameters: Parameters = ()
 
     @property
     def topics(self) -> frozenset[str]:

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from faults.askers import Asker
 from faults.eyes import Eyes
-from faults.fault import Phase
+from faults.fault import Parameters, Phase
 from faults.relay import Relays
 from faults.topics import remappings, topics_of
 from planner_node.cli.client import PlannerClient
@@ -71,11 +71,25 @@ class Setting:
 
 
 class Graph:
-    """Starts the four nodes with relays between them; leaving it stops all."""
+    """Starts the four nodes with relays between them; leaving it stops all.
 
-    def __init__(self, folder: Path, groups: Collection[str], real_time_factor: float) -> None:
+    Args:
+        folder: receives the nodes' logs.
+        groups: of relays, see :mod:`faults.topics`.
+        parameters: of the nodes, besides the simulator's speed.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        groups: Collection[str],
+        real_time_factor: float,
+        parameters: Parameters = (),
+    ) -> None:
         self._folder, self._topics = folder, topics_of(groups)
-        self._parameters = {"sim_node": {"real_time_factor": real_time_factor}}
+        self._parameters = parameters_by_node(
+            (("sim_node", "real_time_factor", real_time_factor), *parameters)
+        )
         self._stack = ExitStack()
 
     def __enter__(self) -> Setting:
@@ -98,3 +112,11 @@ class Graph:
 
     def __exit__(self, *error: Any) -> None:
         self._stack.__exit__(*error)
+
+
+def parameters_by_node(parameters: Parameters) -> dict[str, dict[str, Any]]:
+    """The same as :class:`NodeProcesses` takes them."""
+    by_node: dict[str, dict[str, Any]] = {}
+    for node, name, value in parameters:
+        by_node.setdefault(node, {})[name] = value
+    return by_node

@@ -73,7 +73,7 @@ def draw_task(family: Family, seed: int) -> Task:
 def _task_of_its_own(family: Family, seed: int) -> Task:
     rng = np.random.default_rng([seed, 2])
     blocks = int(rng.integers(family.blocks[0], family.blocks[1] + 1))
-    places = _draw_row(family.row or Row((3, 3), (0.15, 0.15)), rng)
+    places = draw_row(family.row or Row((3, 3), (0.15, 0.15)), rng)
     colors = [str(color) for color in rng.permutation(list(family.colors))[:blocks]]
     names = [object_name(color, str(rng.choice(list(family.shapes)))) for color in colors]
     sizes = {name: _uniform(family.sizes or (0.045, 0.045), rng) for name in names}
@@ -120,6 +120,8 @@ def _with_errors(task: Task, family: Family) -> Task:
     parameters = {node: dict(values) for node, values in task.parameters.items()}
     if sensor:
         parameters["sim_node"] = {**sensor, "sensor.seed": task.seed}
+    if family.mask_source:
+        parameters.setdefault("perception_node", {})["mask_source"] = family.mask_source
     return replace(task, parameters=parameters, disturbance=disturbance, drawn=drawn)
 
 
@@ -146,7 +148,7 @@ def _other_goal(layout: Stacks, rng: np.random.Generator) -> Stacks:
     return goal
 
 
-def _draw_row(row: Row, rng: np.random.Generator) -> tuple[Point, ...]:
+def draw_row(row: Row, rng: np.random.Generator) -> tuple[Point, ...]:
     """Places from the left of the image, (x, y) on the table [m].
 
     Raises:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from scene_graph import BOX
@@ -81,7 +81,9 @@ class Family:
         row: where the places are.
         viewpoint: where the camera is.
         noise: parameters ``sensor.*`` of ``sim_node``; the seed of each task is added.
-        masks: kinds of errors of the masks, each by one pixel, of which a task has one.
+        masks: kinds of errors of the labels that the simulator publishes, each by one pixel, of
+            which a task has one; they matter only where perception hears labels.
+        mask_source: where perception gets its masks; empty: from where it does by default.
         disturbances: requests to ``sim/disturb``, of which a task has one when it begins.
         file: the result file's name in benchmarks/results; empty: ``tasks_NAME``.
         success, low: least success rate, and least lower end of its interval.
@@ -98,6 +100,7 @@ class Family:
     viewpoint: Viewpoint | None = None
     noise: Mapping[str, Any] = field(default_factory=dict)
     masks: tuple[str, ...] = ()
+    mask_source: str = ""
     disturbances: tuple[Mapping[str, Any], ...] = ()
     file: str = ""
     success: float | None = None
@@ -139,22 +142,30 @@ MISHAPS: Final[tuple[Mapping[str, Any], ...]] = (
     {"kind": "nudge"},
 )
 
+VARIED: Final = Family(
+    "varied",
+    "varied: sizes, places, camera, noise",
+    blocks=(4, 6),
+    sizes=(0.03, 0.06),
+    row=Row(),
+    viewpoint=Viewpoint(),
+    noise=RGBD_CAMERA,
+    masks=MASK_ERRORS,
+    success=0.95,
+)
+
 FAMILIES: Final[tuple[Family, ...]] = (
     plain("three", 3),
     plain("four", 4),
     plain("five", 5),
     plain("six", 6, success=0.99, low=0.96, seconds=6.0),
     plain("seven", 7, success=0.99, low=0.96),
-    Family(
-        "varied",
-        "varied: sizes, places, camera, noise",
-        blocks=(4, 6),
-        sizes=(0.03, 0.06),
-        row=Row(),
-        viewpoint=Viewpoint(),
-        noise=RGBD_CAMERA,
-        masks=MASK_ERRORS,
-        success=0.95,
+    VARIED,
+    replace(
+        VARIED,
+        name="varied_masks",
+        what="varied with masks of a detector: sizes, places, camera, noise, outlines",
+        mask_source="segmentation_topic",
     ),
     Family(
         "disturbed",

@@ -45,7 +45,7 @@ with World() as world:
 seen = Perception(load_weights(DEFAULT_WEIGHTS)).perceive(
     Observation(
         frame.rgb,
-        frame.labels,
+        None,
         frame.depth,
         PinholeCamera(camera.intrinsics, camera.world_from_optical, camera.width, camera.height),
     )

@@ -3,20 +3,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from faults import damages as d
 from faults import picture_damages as p
-from faults.fault import CAMERA_PHASES, Fault, Injection, Phase, Words
+from faults.fault import CAMERA_PHASES, Fault, Injection, Parameters, Phase, Words
 from faults.injections import All, Damaged, Restarted
 from faults.modes import Change, Delay, Drop, Freeze, FreezeContent, Repeat, Swap
 from faults.relay import Mode
 from faults.topics import CAMERA, DEPTH, EXTRINSICS, IMAGE, INFO, LABELS
 
 _SILENT: Words = (("camera", "scene graph"),)
+#: By default nobody hears the labels: blocks are found in colour and depth.
+_GIVEN_MASKS: Parameters = (("perception_node", "mask_source", "segmentation_topic"),)
 
 
 def _lasting(name: str, what: str, topics: tuple[str, ...], mode: Mode, *words: str) -> Fault:
     """A fault of some camera topics that stays; ``words``: one of them must be said."""
     return Fault(name, what, Damaged(topics, mode), CAMERA_PHASES, (words,))
+
+
+def _labels(name: str, what: str, mode: Mode, *words: str) -> Fault:
+    """A fault of a detector whose labels are heard; it stays."""
+    return replace(_lasting(name, what, (LABELS,), mode, *words), parameters=_GIVEN_MASKS)
 
 
 def _passing(
@@ -29,7 +38,7 @@ FAULTS = (
     # Streams that stay out
     _lasting("image-lost", "no colour image arrives", (IMAGE,), Drop(), IMAGE),
     _lasting("depth-lost", "no depth image arrives", (DEPTH,), Drop(), DEPTH),
-    _lasting("segmentation-lost", "no segmentation arrives", (LABELS,), Drop(), LABELS),
+    _labels("segmentation-lost", "no segmentation arrives where it is needed", Drop(), LABELS),
     _lasting("camera-info-lost", "no camera_info arrives", (INFO,), Drop(), INFO),
     _lasting("camera-lost", "nothing of the camera arrives", CAMERA, Drop(), "camera"),
     _passing(
@@ -95,9 +104,11 @@ FAULTS = (
         "image-grainy", "noise of 20 grey levels", (IMAGE,), Change(p.pixels(p.grainy)),
         "colour", "reproduces", "noise", IMAGE,
     ),
-    _lasting(
-        "image-mirrored", "colour is mirrored, depth and segmentation are not", (IMAGE,),
-        Change(p.pixels(p.mirrored)), "colour", "reproduces", IMAGE, "same pixels",
+    Fault(
+        "image-mirrored", "colour is mirrored, depth is not",
+        Damaged((IMAGE,), Change(p.pixels(p.mirrored))), CAMERA_PHASES,
+        (("colour", "reproduces", IMAGE, "same pixels", "hides"),),
+        unseen="equal towers on both sides look alike in a mirror, but for their colours",
     ),
     _lasting(
         "encoding-wrong", "the colour image is called bgr8", (IMAGE,),
@@ -128,29 +139,27 @@ FAULTS = (
         "depth-offset", "depth is 5 cm too small", (DEPTH,), Change(p.pixels(p.nearer(0.05))),
         "depth", "extrinsics", "calibrat",
     ),
-    # Segmentation
+    # Segmentation, where masks come from a detector
     Fault(
         "labels-shuffled", "other numbers for the same blocks, for good",
         Damaged((LABELS,), Change(p.pixels(p.labels_shuffled))), CAMERA_PHASES,
-        (("segmentation",),), transient=True,
+        (("segmentation",),), transient=True, parameters=_GIVEN_MASKS,
     ),
-    _lasting(
-        "labels-scattered", "every pixel of a block has the label of some block", (LABELS,),
+    _labels(
+        "labels-scattered", "every pixel of a block has the label of some block",
         Change(p.pixels(p.labels_scattered)), "segmentation", "label", "reproduces",
     ),
-    _lasting(
-        "labels-merged", "one label for all blocks", (LABELS,),
-        Change(p.pixels(p.labels_merged)), "segmentation", "label", "unknown", "cannot be seen",
-        "no ", "beside",
+    _labels(
+        "labels-merged", "one label for all blocks", Change(p.pixels(p.labels_merged)),
+        "segmentation", "label", "unknown", "cannot be seen", "no ", "beside",
     ),
-    _lasting(
-        "labels-none", "the detector finds nothing", (LABELS,), Change(p.pixels(p.black)),
+    _labels(
+        "labels-none", "the detector finds nothing", Change(p.pixels(p.black)),
         "no block", "not a block",
     ),
-    Fault(
-        "block-overlooked", "the detector overlooks one block",
-        Damaged((LABELS,), Change(p.pixels(p.lost_label))), CAMERA_PHASES,
-        (("not a block", "not seen", "cannot be seen", "unknown", "no ", "in the air"),),
+    _labels(
+        "block-overlooked", "the detector overlooks one block", Change(p.pixels(p.lost_label)),
+        "not a block", "not seen", "cannot be seen", "unknown", "no ", "in the air",
     ),
     # What stands in between, what is calibrated
     Fault(
@@ -158,7 +167,6 @@ FAULTS = (
         All((
             Damaged((IMAGE,), Change(p.pixels(p.covered(60)))),
             Damaged((DEPTH,), Change(p.pixels(p.covered(0.3)))),
-            Damaged((LABELS,), Change(p.pixels(p.covered(0)))),
         )),
         CAMERA_PHASES, (("hides", "hidden"),),
     ),
@@ -167,7 +175,6 @@ FAULTS = (
         All((
             Damaged((IMAGE,), Change(p.pixels(p.covered(60)))),
             Damaged((DEPTH,), Change(p.pixels(p.covered(0.3)))),
-            Damaged((LABELS,), Change(p.pixels(p.covered(0)))),
         )),
         4.0, CAMERA_PHASES,
     ),

@@ -23,7 +23,7 @@ _GONE = ("cannot be seen", "not seen", "no ", "unknown")
 
 FAULTS = (
     Fault("world-block-pushed", "a block is pushed some 5 cm away from the arm",
-          Disturbed(_Ask.PUSH, some_top), ALL_PHASES, (_ASTRAY,)),
+          Disturbed(_Ask.PUSH, some_top), ALL_PHASES, ((*_ASTRAY, *_GONE),)),
     Fault("world-block-pulled-out", "the block that is lifted next is pulled out of the hand",
           Disturbed(_Ask.PUSH, fields={"force": 60.0, "direction": _DOWN, "when": _Ask.IN_AIR}),
           _BEFORE, ((*_ASTRAY, *_GRIP),)),

@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 import pytest
-from fake_camera import OTHER, TOWERS, FakeCamera
+from fake_camera import OTHER, TOPICS, TOWERS, WITHOUT_LABELS, FakeCamera
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 
 from perception_node.node import PerceptionNode
+from perception_node.segment import SEGMENTATION_TOPIC
 from scene_graph import Stacks
 from sim_node.camera import Frame
 from sim_node.world import World
@@ -32,12 +35,35 @@ def perception(ros_context: Any) -> PerceptionNode:
 
 
 @pytest.fixture
+def perception_of_labels(ros_context: Any) -> PerceptionNode:
+    """One whose masks come from a detector."""
+    source = Parameter("mask_source", value=SEGMENTATION_TOPIC)
+    return ros_context.add(
+        PerceptionNode(context=ros_context.context, namespace="/cell", parameter_overrides=[source])
+    )
+
+
+@pytest.fixture
 def camera(ros_context: Any, perception: PerceptionNode) -> FakeCamera:
+    """A camera that publishes no labels."""
+    return camera_before(ros_context, perception, WITHOUT_LABELS)
+
+
+@pytest.fixture
+def labelling_camera(ros_context: Any, perception_of_labels: PerceptionNode) -> FakeCamera:
+    """A camera with a detector."""
+    return camera_before(ros_context, perception_of_labels, tuple(TOPICS))
+
+
+def camera_before(
+    ros_context: Any, perception: PerceptionNode, topics: Collection[str]
+) -> FakeCamera:
+    """A camera that perception hears, and that hears perception."""
     node = ros_context.add(Node("fake_camera", context=ros_context.context, namespace="/cell"))
-    camera = FakeCamera(ros_context, node)
+    camera = FakeCamera(ros_context, node, topics=topics)
     ros_context.wait_until(
         lambda: (
-            all(publisher.get_subscription_count() for publisher in camera.publishers)
+            all(publisher.get_subscription_count() for publisher in camera.publishers.values())
             and perception.count_subscribers("scene_graph")
         ),
         what="discovery",

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from builtin_interfaces.msg import Time
@@ -22,17 +23,24 @@ from sim_node.scene import CameraConfig
 TOWERS: Stacks = (("red_box", "blue_box"), ("green_box",), ("yellow_box", "purple_box"))
 OTHER: Stacks = ((), ("green_box", "blue_box", "red_box"), ("purple_box", "yellow_box"))
 
-#: The images of a frame and their camera info, in the order of :meth:`FakeCamera.messages`.
+LABELS = "camera/segmentation"
+#: The images of a frame and their camera info, in the order in which the simulator makes them.
 TOPICS = {
     "camera/image_raw": Image,
     "camera/depth/image_raw": Image,
-    "camera/segmentation": Image,
+    LABELS: Image,
     "camera/camera_info": CameraInfo,
 }
+#: What a camera publishes by itself.
+WITHOUT_LABELS = tuple(topic for topic in TOPICS if topic != LABELS)
 
 
 class FakeCamera:
-    """A node's publishers of a camera, and the scene graphs that it heard."""
+    """A node's publishers of a camera, and the scene graphs that it heard.
+
+    Args:
+        topics: what is published of a frame; the labels only where a detector is there, too.
+    """
 
     def __init__(
         self,
@@ -40,14 +48,15 @@ class FakeCamera:
         node: Node,
         images: QoSProfile = NEWEST,
         extrinsics: QoSProfile = LATCHED,
+        topics: Collection[str] = WITHOUT_LABELS,
     ) -> None:
         self.node = node
         self.graphs: list[SceneGraph] = []
         self._wait_until = ros_context.wait_until
         self._seconds = 100
-        self.publishers = [
-            node.create_publisher(kind, topic, images) for topic, kind in TOPICS.items()
-        ]
+        self.publishers = {
+            topic: node.create_publisher(TOPICS[topic], topic, images) for topic in topics
+        }
         self._extrinsics = node.create_publisher(TransformStamped, "camera/extrinsics", extrinsics)
         node.create_subscription(SceneGraph, "scene_graph", self.graphs.append, NEWEST)
 
@@ -72,15 +81,19 @@ class FakeCamera:
         self._wait_until(arrived, what="extrinsics")
         return answers[-1]
 
-    def messages(self, frame: Frame) -> list[Any]:
-        """Colour, depth, segmentation and camera info with a new stamp."""
+    def messages(self, frame: Frame) -> dict[str, Any]:
+        """Everything of a frame by topic, the labels too, with a new stamp."""
         self._seconds += 1
-        return list(camera_messages(frame, CameraConfig(), self.stamp))
+        return dict(zip(TOPICS, camera_messages(frame, CameraConfig(), self.stamp)))
 
-    def send(self, messages: list[Any]) -> SceneGraph:
+    def publish(self, messages: Mapping[str, Any]) -> None:
+        """Publishes those messages that this camera has a topic for."""
+        for topic in self.publishers.keys() & messages.keys():
+            self.publishers[topic].publish(messages[topic])
+
+    def send(self, messages: Mapping[str, Any]) -> SceneGraph:
         """Publishes messages of the newest stamp, and waits for the graph of it."""
-        for publisher, message in zip(self.publishers, messages):
-            publisher.publish(message)
+        self.publish(messages)
         self._wait_until(
             lambda: self.graphs and self.graphs[-1].header.stamp.sec == self._seconds,
             what="a graph of the newest frame",

@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from fake_camera import OTHER, TOWERS, FakeCamera
+from fake_camera import LABELS, OTHER, TOWERS, FakeCamera
 from rclpy.parameter import Parameter
 from ros2_run import Start, finish
 from sensor_msgs.msg import Image
@@ -61,8 +61,9 @@ def test_a_goal_image_is_interpreted(
         ros_context.wait_until(future.done)
         return future.result().scene_graph
 
-    image, _, segmentation, *_ = camera.messages(frames[OTHER])
-    request = ImageToSceneGraph.Request(image=image, segmentation=segmentation)
+    messages = camera.messages(frames[OTHER])
+    image = messages["camera/image_raw"]
+    request = ImageToSceneGraph.Request(image=image, segmentation=messages[LABELS])
     graph = graph_from_message(ask(request))
     assert graph.places == ()  # no camera is known yet: left-relations instead
     camera.calibrate_and_show(frames[TOWERS])
@@ -83,16 +84,25 @@ def test_parameters_are_checked_and_take_effect(
         ("stack_positions", [0.5, 0.0]),
         ("stack_positions", [0.5, 0.0, 0.0, 0.5, 0.0, 0.0]),
         ("weights", "/elsewhere"),
+        ("mask_source", "segmentation_topic"),
     ):
         result = perception.set_parameters([Parameter(name, value=value)])[0]
         assert not result.successful and result.reason
     assert perception.set_parameters([Parameter("min_confidence", value=1.0)])[0].successful
     assert camera.show(frames[TOWERS]).status == SceneGraph.LOW_CONFIDENCE
-    two_places = [0.5, -0.15, 0.0, 0.5, 0.0, 0.0]
+    two_places = [0.5, -0.08, 0.0, 0.5, 0.08, 0.0]
     assert perception.set_parameters([Parameter("stack_positions", value=two_places)])[0].successful
     message = camera.show(frames[TOWERS])
     assert message.status == SceneGraph.UNSTABLE
     assert "3 stacks are seen but there are 2 places" in message.message
+
+
+def test_a_source_of_masks_that_does_not_exist_is_refused_with_those_that_do(start: Start) -> None:
+    ended = finish(
+        start("perception_node", "perception_node", "--ros-args", "-p", "mask_source:=detector")
+    )
+    assert ended.code == 2
+    assert "mask_source is 'detector'; there are rgbd, segmentation_topic" in ended.stderr
 
 
 def test_bad_weights_are_refused_with_a_sentence(start: Start, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from faults.judge import arm_untruth, ending_of, holds, untidy
 from faults.numbered import NUMBERED, numbered_table
 from faults.numbered import tests_that_name as by_number
 from faults.report import command_of, dictionary, make_rows, problems
+from faults.setting import parameters_by_node
 from faults.small_tasks import (
     first_layout,
     other_layout,
@@ -24,7 +26,9 @@ from faults.small_tasks import (
     two_blocks_swapped,
     without_top,
 )
+from faults.topics import LABELS
 
+from perception_node.segment import SEGMENTATION_TOPIC
 from scene_graph import Place, SceneGraph, SceneObject, Stacks, up_relations
 
 RED_ON_BLUE: Stacks = (("blue_box", "red_box"), (), ())
@@ -96,6 +100,27 @@ def test_the_command_that_is_printed_runs_the_same_trial() -> None:
     command = command_of(trial(fault="cancelled", phase="confirm", seed=1234))
     assert command == "make eval-faults ONLY=cancelled PHASE=confirm SEED=1234"
     assert seed_of(fault, 1) == seed_of(fault, 0) + 1
+
+
+def test_a_detector_is_damaged_where_its_labels_are_heard() -> None:
+    for fault in CATALOGUE:
+        mask_source = parameters_by_node(fault.parameters).get("perception_node", {})
+        if fault.topics == {LABELS}:
+            assert mask_source == {"mask_source": SEGMENTATION_TOPIC}, fault.name
+        else:
+            assert not mask_source, fault.name
+
+
+def test_trials_with_the_same_parameters_share_a_graph() -> None:
+    tasks = plan_tasks(
+        faults_named("labels-merged,image-black,labels-none,depth-nan"), 2, None, None
+    )
+    kinds = [graph for graph, _ in groupby(tasks, key=lambda task: task.graph)]
+    assert len(kinds) == 2
+    assert {parameters for _, parameters in kinds} == {
+        (),
+        (("perception_node", "mask_source", SEGMENTATION_TOPIC),),
+    }
 
 
 # Small tasks

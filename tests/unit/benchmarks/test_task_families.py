@@ -14,13 +14,14 @@ import pytest
 from tasks.draw import Task, draw_task, reachable_goal, unknown_parameters
 from tasks.family import FAMILIES, Family, Row, UnknownFamilyError, family_named, family_of
 
+from perception_node.segment import SEGMENTERS
 from planner_node.goals import parse_goal, resolve_goal
 from scene_graph import Stacks
 from sim_node.layouts import all_layouts, random_layout
 from sim_node.scene import CameraConfig
 from tamp_bringup.task import goal_text, random_goal
 
-VARIED = family_named("varied")
+VARIED, VARIED_MASKS = family_named("varied"), family_named("varied_masks")
 SEEDS = range(60)
 
 every_family = pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.name)
@@ -219,6 +220,25 @@ def test_every_kind_of_mask_error_and_every_disturbance_occurs() -> None:
     drawn = [draw_task(disturbed, seed) for seed in range(100)]
     assert len({task.drawn["disturbance"] for task in drawn}) == len(disturbed.disturbances)
     assert all(task.disturbance in disturbed.disturbances for task in drawn)
+
+
+@every_seed
+def test_the_varied_tasks_can_be_run_with_the_masks_of_a_detector_and_are_the_same_else(
+    seed: int,
+) -> None:
+    found, given = draw_task(VARIED, seed), draw_task(VARIED_MASKS, seed)
+    told = dict(given.parameters["perception_node"])
+    assert told.pop("mask_source") == "segmentation_topic"
+    expected = {**found.parameters, "perception_node": told}
+    assert replace(given, family="varied", parameters=expected) == found
+    assert "mask_source" not in found.parameters["perception_node"]
+
+
+def test_both_varied_families_have_the_same_bound_and_rows_and_files_of_their_own() -> None:
+    assert VARIED.success == VARIED_MASKS.success == 0.95
+    assert VARIED_MASKS.result == "tasks_varied_masks"
+    assert len({family.what.split(",")[0] for family in (VARIED, VARIED_MASKS)}) == 2
+    assert VARIED_MASKS.mask_source in SEGMENTERS
 
 
 def test_a_disturbed_task_is_a_plain_one_in_which_something_goes_wrong() -> None:

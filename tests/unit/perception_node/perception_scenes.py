@@ -37,8 +37,13 @@ class Solid:
 
     shape: str
     centre: tuple[float, float, float]
-    half: float = 0.0225
+    half: float | tuple[float, float, float] = 0.0225
     yaw: float = 0.0
+
+    @property
+    def halves(self) -> Array:
+        """Half extents along its own axes, shape (3,) [m]; a round one's radius is the first."""
+        return np.broadcast_to(np.asarray(self.half, dtype=float), 3)
 
 
 def cast(solids: list[Solid], camera: PinholeCamera) -> tuple[Array, NDArray[np.uint16]]:
@@ -61,13 +66,13 @@ def _hit(solid: Solid, origin: Array, rays: Array) -> Array:
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     start, directions = (origin - solid.centre) @ turn, rays @ turn
     directions = np.where(np.abs(directions) < 1e-12, 1e-12, directions)
+    half = solid.halves
     if solid.shape == "sphere":
-        return _quadratic(start, directions, solid.half)[0]
-    near = (-solid.half - start) / directions
-    far = (solid.half - start) / directions
+        return _quadratic(start, directions, half[0])[0]
+    near, far = (-half - start) / directions, (half - start) / directions
     enter, leave = np.minimum(near, far), np.maximum(near, far)
     if solid.shape == "cylinder":
-        round_enter, round_leave = _quadratic(start[:2], directions[..., :2], solid.half)
+        round_enter, round_leave = _quadratic(start[:2], directions[..., :2], half[0])
         first = np.maximum(enter[..., 2], round_enter)
         last = np.minimum(leave[..., 2], round_leave)
     else:
@@ -83,6 +88,17 @@ def _quadratic(start: Array, directions: Array, radius: float) -> tuple[Array, A
     hits = root > 0
     root = np.sqrt(np.where(hits, root, 0.0))
     return np.where(hits, (-b - root) / a, np.inf), np.where(hits, (-b + root) / a, -np.inf)
+
+
+def piled(place: int, sizes: list[tuple[float, float, float]], yaws: list[float]) -> list[Solid]:
+    """Boxes of these sizes [m] and yaws [rad] on one another at a place."""
+    x, y, level = PLACES[place]
+    boxes = []
+    for (width, depth, height), yaw in zip(sizes, yaws):
+        half = (0.5 * width, 0.5 * depth, 0.5 * height)
+        boxes.append(Solid("box", (x, y, level + half[2]), half, yaw))
+        level += height
+    return boxes
 
 
 def tower(

@@ -6,12 +6,22 @@ from __future__ import annotations
 import numpy as np
 import pybullet
 
-from perception_node import Observation, Perceived, Perception, PinholeCamera, load_weights
+from perception_node import (
+    Observation,
+    Perceived,
+    Perception,
+    PerceptionConfig,
+    PinholeCamera,
+    load_weights,
+)
+from perception_node.segment import SEGMENTATION_TOPIC
 from scene_graph import Stacks
 from sim_node.camera import Frame
 from sim_node.world import World
 
+#: With masks found in colour and depth, and with those that come with the picture.
 PERCEPTION = Perception(load_weights())
+LABELLED = PERCEPTION.configured(PerceptionConfig(mask_source=SEGMENTATION_TOPIC))
 TOWERS: Stacks = (("red_box", "blue_box", "green_box"), (), ("yellow_box", "purple_box"))
 
 
@@ -20,9 +30,15 @@ def camera_of(world: World) -> PinholeCamera:
     return PinholeCamera(config.intrinsics, config.world_from_optical, config.width, config.height)
 
 
-def perceive(world: World, frame: Frame | None = None) -> Perceived:
+def observe(world: World, frame: Frame | None = None) -> Observation:
     frame = frame or world.render()
-    return PERCEPTION.perceive(Observation(frame.rgb, frame.labels, frame.depth, camera_of(world)))
+    return Observation(frame.rgb, frame.labels, frame.depth, camera_of(world))
+
+
+def perceive(
+    world: World, frame: Frame | None = None, perception: Perception = PERCEPTION
+) -> Perceived:
+    return perception.perceive(observe(world, frame))
 
 
 def put(

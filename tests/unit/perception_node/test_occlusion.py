@@ -3,6 +3,7 @@
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 from perception_scenes import Solid, cast, looking_camera, tower
@@ -47,6 +48,30 @@ def test_something_in_front_of_a_place_hides_it(place: int) -> None:
 def test_something_behind_the_places_hides_nothing() -> None:
     _, occlusion = seen([*tower(1, [BOX]), Solid(BOX, (0.3, 0.0, 0.1), half=0.05)], 1)
     assert occlusion.greatest == 0.0
+
+
+def test_a_blocks_own_rim_that_its_mask_misses_hides_nothing() -> None:
+    blocks = tower(0, [BOX] * 3, 0.3) + tower(2, [BOX])
+    observation, _ = seen(blocks, len(blocks))
+    assert observation.labels is not None
+    inner = cv2.erode(observation.labels, np.ones((5, 5), np.uint8))
+    labels = np.where(inner == observation.labels, inner, 0)
+    missed, segments = replace(observation, labels=labels), Segments.from_labels(labels)
+    poses = [BlockPose(solid.centre, solid.yaw, (0.045,) * 3) for solid in blocks]
+    unmeasured = find_occlusion(missed, segments, RowOfPlaces(), PerceptionConfig())
+    measured = find_occlusion(missed, segments, RowOfPlaces(), PerceptionConfig(), poses)
+    assert unmeasured.greatest > 0.02
+    assert measured.greatest == 0.0
+
+
+def test_a_thing_in_front_of_a_measured_block_hides_it_all_the_same() -> None:
+    blocks = tower(1, [BOX] * 2)
+    observation, occlusion = seen([*blocks, Solid(BOX, (0.56, 0.0, 0.05), half=0.015)], 2)
+    assert observation.labels is not None
+    segments = Segments.from_labels(observation.labels)
+    poses = [BlockPose(solid.centre, 0.0, (0.045,) * 3) for solid in blocks]
+    measured = find_occlusion(observation, segments, RowOfPlaces(), PerceptionConfig(), poses)
+    assert measured.greatest == occlusion.greatest > 0.03
 
 
 def test_a_block_behind_something_is_visible_in_part() -> None:

@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
-from perception_node import Observation, Perception, Segments
+from perception_node import Observation, Perception, PerceptionConfig, Segments
 from perception_node.errors import BadImageError
-from perception_node.segment import given_labels
+from perception_node.segment import SEGMENTATION_TOPIC, Volume, given_labels
 from perception_node.visual_module.mask_centroid import MaskCentroid
 from scene_graph import GraphStatus
 
@@ -19,7 +19,7 @@ def picture() -> np.ndarray:
     return rgb
 
 
-def by_color(observation: Observation) -> Segments:
+def by_color(observation: Observation, _volume: Volume | None) -> Segments:
     """A segmenter that needs no labels: what is colourful, by its strongest channel."""
     rgb = observation.rgb.astype(int)
     colorful = np.ptp(rgb, axis=-1) > 60
@@ -56,10 +56,11 @@ def test_the_largest_part_leaves_detached_pixels_out_and_bridges_cracks() -> Non
     assert np.array_equal(segment.mask, labels == 1)
 
 
-def test_the_default_segmenter_asks_for_labels() -> None:
+@pytest.mark.parametrize("config", [PerceptionConfig(), PerceptionConfig(SEGMENTATION_TOPIC)])
+def test_where_there_is_no_depth_labels_are_asked_for(config: PerceptionConfig) -> None:
     with pytest.raises(BadImageError, match="without instance labels"):
         given_labels(Observation(picture()))
-    perceived = Perception(MaskCentroid()).perceive(Observation(picture()))
+    perceived = Perception(MaskCentroid(), config).perceive(Observation(picture()))
     assert perceived.status is GraphStatus.BAD_IMAGE and "labels" in perceived.message
 
 
@@ -75,7 +76,7 @@ def test_with_a_segmenter_of_ones_own_a_picture_alone_becomes_a_graph() -> None:
 
 
 def test_a_segmenter_that_answers_in_another_size_is_refused() -> None:
-    def careless(_observation: Observation) -> Segments:
+    def careless(_observation: Observation, _volume: Volume | None) -> Segments:
         return Segments.from_labels(np.ones((64, 128), int))
 
     perceived = Perception(MaskCentroid(), segmenter=careless).perceive(Observation(picture()))

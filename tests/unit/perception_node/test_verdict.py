@@ -20,10 +20,12 @@ CLEAR = Occlusion(shares=(0.0, 0.0))
 CONFIG = PerceptionConfig()
 
 
-def block(x: float = 0.5, bottom: float = 0.0, tilt: float = 0.0) -> MeasuredBlock:
-    """A cube of 40 mm above the first place."""
+def block(
+    x: float = 0.5, bottom: float = 0.0, tilt: float = 0.0, doubt: float = 0.0
+) -> MeasuredBlock:
+    """A cube of 40 mm above the first place, whose x is known to this standard deviation."""
     pose = BlockPose((x, 0.0, bottom + 0.02), 0.0, (0.04, 0.04, 0.04))
-    return MeasuredBlock(BOX, pose, tilt)
+    return MeasuredBlock(BOX, pose, tilt, (doubt, *(0.0,) * 6))
 
 
 def verdict(
@@ -96,6 +98,17 @@ def test_a_hidden_place_comes_before_every_other_reason() -> None:
     assert judge_empty(hidden, CONFIG) == (status, message)
     tolerant = replace(CONFIG, max_hidden=0.3)
     assert judge_empty(hidden, tolerant).status is GraphStatus.NO_OBJECTS
+
+
+def test_a_block_whose_centre_is_known_badly_is_doubtful_unless_it_does_not_even_stand() -> None:
+    limit = CONFIG.limits.doubt
+    status, message = verdict(block(), block(bottom=0.04, doubt=2.0 * limit))
+    assert status is GraphStatus.LOW_CONFIDENCE
+    assert "how far blue_box reaches back is not seen" in message
+    numbers = f"known to {2000 * limit:.0f} mm only (required: {1000 * limit:.0f} mm)"
+    assert f"{numbers}; look from another side" in message
+    assert verdict(block(doubt=0.9 * limit), block(bottom=0.04))[0] is GraphStatus.CONFIDENT
+    assert verdict(block(), block(bottom=0.09, doubt=2 * limit))[0] is GraphStatus.UNSTABLE
 
 
 def test_doubt_is_the_last_reason() -> None:

@@ -32,8 +32,12 @@ def images_of(rgb: NDArray[np.uint8], labels: NDArray[np.uint16]) -> ObjectImage
     return object_images(rgb, Segments.from_labels(labels))
 
 
+def locate_in(rgb: NDArray[np.uint8], labels: NDArray[np.uint16]) -> Coordinates:
+    return MODULE.locate(MODULE.images(rgb, Segments.from_labels(labels)))
+
+
 def locate(corners: list[tuple[int, int]]) -> Coordinates:
-    return MODULE.locate(images_of(*scene_of(corners)))
+    return locate_in(*scene_of(corners))
 
 
 #: Nearer than 10 px to the picture's edge the network feels the zeros beyond it.
@@ -57,7 +61,7 @@ def test_corners_are_found_to_two_pixels(corners: list[tuple[int, int]]) -> None
     visible = [
         i for i, corner in enumerate(corners) if np.count_nonzero(labels == i + 1) == 24 * 24
     ]
-    located = MODULE.locate(images_of(rgb, labels))
+    located = locate_in(rgb, labels)
     for index in visible:
         row = int(np.flatnonzero(found == index + 1)[0])
         assert located.corners[row] * 256 == pytest.approx(corners[index], abs=2.0)
@@ -88,9 +92,8 @@ def test_specks_far_away_draw_the_centroid_but_not_the_learnt_coordinates() -> N
     rgb, labels = scene_of([(40, 40)])
     specks = np.random.default_rng(0).random(labels.shape) < 0.01
     labels[specks] = 1
-    objects = images_of(rgb, labels)
-    learnt = MODULE.locate(objects).centres[0] * 256 - (corner + 12)
-    centroid = MaskCentroid().locate(objects).centres[0] * 256 - (corner + 12)
+    learnt = locate_in(rgb, labels).centres[0] * 256 - (corner + 12)
+    centroid = MaskCentroid().locate(images_of(rgb, labels)).centres[0] * 256 - (corner + 12)
     assert np.abs(learnt).max() < 4.0
     assert np.abs(centroid).max() > 20.0
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from .observation import Observation
     from .pipeline import Perceived, Perception
     from .places import Places, RowOfPlaces, Standing
-    from .segment import Segment, Segmenter, Segments, given_labels
+    from .segment import Segment, Segmenter, Segments, Volume, given_labels
     from .visual_module.coordinates import Coordinates, Locator
     from .visual_module.mask_centroid import MaskCentroid
     from .visual_module.object_images import ObjectImages
@@ -56,6 +56,7 @@ _HOMES = {
     "StabilityLimits": "config",
     "Standing": "places",
     "VisualModule": "visual_module.visual_module",
+    "Volume": "segment",
     "WeightsError": "errors",
     "draw_scene_graph": "drawing",
     "given_labels": "segment",
@@ -83,6 +84,7 @@ __all__ = [
     "StabilityLimits",
     "Standing",
     "VisualModule",
+    "Volume",
     "WeightsError",
     "draw_scene_graph",
     "given_labels",

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from scene_graph import ROW_OF_THREE
 
 from .places import Points
+from .segment import RGBD
 
 
 @dataclass(frozen=True)
@@ -20,12 +21,15 @@ class StabilityLimits:
         tilt: angle of a block's front from the vertical [rad].
         overhang: horizontal distance between the centres of a block and the one below, as part of
             the block's width; at one half the upper one falls.
+        doubt: standard deviation with which the centre of a block may be known, along any
+            horizontal axis [m].
     """
 
     place_tolerance: float = 0.03
     gap: float = 0.008
     tilt: float = 0.14
     overhang: float = 0.45
+    doubt: float = 0.002
 
 
 @dataclass(frozen=True)
@@ -33,6 +37,7 @@ class PerceptionConfig:
     """What perception knows of the scene, and what it accepts.
 
     Attributes:
+        mask_source: where the blocks' pixels come from, see ``segment.SEGMENTERS``.
         stack_positions: centres of the m places on the table, from the left of the image [m]; none
             where the places are unknown, which leaves left-relations instead of bases.
         min_confidence: least confidence of a confident graph (A.2.5).
@@ -41,6 +46,7 @@ class PerceptionConfig:
         limits: what counts as standing.
     """
 
+    mask_source: str = RGBD
     stack_positions: Points = ROW_OF_THREE
     min_confidence: float = 0.6
     max_hidden: float = 0.005

@@ -11,20 +11,49 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_graph import BASIC_COLORS, COLORS, object_name
+from scene_graph import COLORS, object_name
 
 from .segment import Segments
 
 Array = NDArray[np.float64]
 
-_NAMES: Final = BASIC_COLORS
+_NAMES: Final = tuple(COLORS)
 #: Brightness that a surface may have, relative to the colour's own, in equal ratios.
-_SHADES: Final = np.geomspace(0.3, 1.4, 24)
+_SHADES: Final = np.geomspace(0.3, 1.2, 18)
 #: Cost of a block's shade that differs from the scene's, per squared logarithm [ΔE²].
 _OWN_SHADE_COST: Final = 1600.0
 #: Cost of a scene's shade that differs from the usual one, per squared logarithm [ΔE²].
 _SCENE_SHADE_COST: Final = 100.0
 _USUAL_SHADE: Final = 0.8
+#: Colour of the light: gains of red and of blue over green, in equal ratios, and the cost of
+#: one that is not 1, per squared logarithm [ΔE²].
+_GAINS: Final = np.exp(np.linspace(-0.42, 0.42, 7))
+_GAIN_COST: Final = 600.0
+#: White light that explains all colours to this [ΔE] is not asked further.
+_WHITE_ENOUGH: Final = 5.0
+#: A block of no known colour says nothing of the light beyond this cost [ΔE²].
+_MOST_COST: Final = 400.0
+#: A colour is not named that is further than this from all names, or not nearer by this to its own
+#: than to the next one [ΔE].
+MAX_DISTANCE: Final = 6.0
+MIN_MARGIN: Final = 5.0
+
+
+@dataclass(frozen=True)
+class ColorFit:
+    """How the colours of N blocks are explained, all lit by one light.
+
+    Attributes:
+        names: the nearest of ``scene_graph.COLORS`` for each.
+        others: the next nearest.
+        distances: from the nearest, an own shade counting half, shape (N,) [ΔE].
+        margins: by how much the next one is further away, shape (N,) [ΔE].
+    """
+
+    names: tuple[str, ...]
+    others: tuple[str, ...]
+    distances: Array
+    margins: Array
 
 
 @dataclass(frozen=True)
@@ -32,12 +61,14 @@ class Names:
     """What the N blocks of a scene are called, in the order of their segments.
 
     Attributes:
-        colors: names of ``scene_graph.BASIC_COLORS``.
+        colors: names of ``scene_graph.COLORS``.
         names: unique.
+        doubt: a sentence about the first block whose colour has no certain name; empty if all have.
     """
 
     colors: tuple[str, ...]
     names: tuple[str, ...]
+    doubt: str = ""
 
 
 def name_blocks(
@@ -52,8 +83,22 @@ def name_blocks(
         rgb: shape (height, width, 3).
         shapes, stacks: see :func:`unique_names`.
     """
-    colors = color_names(mean_colors(rgb, [segment.part for segment in segments]))
-    return Names(colors, unique_names(colors, shapes, stacks))
+    colors = mean_colors(rgb, [segment.part for segment in segments])
+    fit = explain_colors(colors)
+    names = unique_names(fit.names, shapes, stacks)
+    return Names(fit.names, names, _doubt(fit, colors, names))
+
+
+def _doubt(fit: ColorFit, colors: Array, names: Sequence[str]) -> str:
+    """A sentence about the first colour without a certain name, or an empty string."""
+    for index, name in enumerate(names):
+        red, green, blue = (round(255.0 * float(value)) for value in colors[index])
+        seen = f"the colour of what would be {name}, ({red}, {green}, {blue}) of 255,"
+        if fit.distances[index] > MAX_DISTANCE:
+            return f"{seen} is none that has a name; is the light very coloured or too bright?"
+        if fit.margins[index] < MIN_MARGIN:
+            return f"{seen} may be {fit.names[index]} or {fit.others[index]}; give it more light"
+    return ""
 
 
 def mean_colors(rgb: NDArray[np.uint8], masks: Sequence[NDArray[np.bool_]]) -> Array:
@@ -76,27 +121,60 @@ def mean_colors(rgb: NDArray[np.uint8], masks: Sequence[NDArray[np.bool_]]) -> A
 
 
 def color_names(colors: Array) -> tuple[str, ...]:
-    """The nearest of ``scene_graph.BASIC_COLORS`` for each colour, in CIE Lab, whatever the light.
+    """The names of :func:`explain_colors`."""
+    return explain_colors(colors).names
 
-    Light and shade scale a colour, which alone would turn orange into brown. The blocks of a scene
-    are lit alike, so one shade is sought that explains all of them best; each may differ from it a
-    little, at a cost.
+
+def explain_colors(colors: Array) -> ColorFit:
+    """The nearest of ``scene_graph.COLORS`` for each colour, in CIE Lab, whatever the light.
+
+    Light and shade scale a colour, which alone would turn orange into brown, and a coloured light
+    scales its channels. The blocks of a scene are lit alike, so one shade and one light are sought
+    that explain all of them best; each may differ from the shade a little, at a cost.
 
     Args:
         colors: sRGB in 0..1, shape (N, 3).
     """
     if len(colors) == 0:
-        return ()
+        return ColorFit((), (), np.zeros(0), np.zeros(0))
+    white = _explain(colors, np.ones((1, 3)))
+    if white.distances.max() < _WHITE_ENOUGH and white.margins.min() >= MIN_MARGIN:
+        return white
+    red, blue = (gain.ravel() for gain in np.meshgrid(_GAINS, _GAINS, indexing="ij"))
+    return _explain(colors, np.stack([red, np.ones_like(red), blue], axis=-1))
+
+
+def _explain(colors: Array, gains: Array) -> ColorFit:
+    """The same for lights of certain colours only, shape (lights, 3)."""
     palette = np.array([COLORS[name] for name in _NAMES])
-    shaded = np.clip(palette[None] * _SHADES[:, None, None], 0.0, 1.0)
-    difference = _lab(shaded)[None] - _lab(colors)[:, None, None]
-    distance = np.sum(difference**2, axis=-1)  # (N, shades of the block, names)
-    ratio = np.log(_SHADES[:, None] / _SHADES[None])  # (shades of the block, shades of the scene)
-    # (N, scene's shade, name): the block's own shade chosen freely
-    cost = (distance[:, :, None] + _OWN_SHADE_COST * (ratio**2)[None, :, :, None]).min(axis=1)
-    scene = cost.min(axis=2).sum(axis=0) + _SCENE_SHADE_COST * np.log(_SHADES / _USUAL_SHADE) ** 2
-    best = cost[:, int(scene.argmin())].argmin(axis=1)
-    return tuple(_NAMES[index] for index in best)
+    shaded = _lab(np.clip(palette[None] * _SHADES[:, None, None], 0.0, 1.0)).reshape(-1, 3)
+    seen = _lab(np.clip(colors[None] / gains[:, None], 0.0, 1.0))  # (lights, N, 3)
+    # |a - b|² by a product: (lights, N, shades of the block, names)
+    distance = (seen**2).sum(-1)[..., None] + (shaded**2).sum(-1) - 2.0 * seen @ shaded.T
+    distance = distance.reshape(*seen.shape[:2], len(_SHADES), len(_NAMES))
+    ratio = np.log(_SHADES[:, None] / _SHADES[None]) ** 2  # (shades of the block, of the scene)
+    unusual = _SCENE_SHADE_COST * np.log(_SHADES / _USUAL_SHADE) ** 2
+    tint = _GAIN_COST * (np.log(gains) ** 2).sum(axis=1)
+    best, least = np.zeros((len(colors), len(_NAMES))), np.inf
+    half = best
+    for scene in range(len(_SHADES)):
+        # The block's own shade chosen freely: (lights, N, names)
+        cost = (distance + _OWN_SHADE_COST * ratio[:, scene, None]).min(axis=2)
+        total = np.minimum(cost.min(axis=2), _MOST_COST).sum(axis=1) + tint + unusual[scene]
+        light = int(total.argmin())
+        if total[light] < least:
+            best, least = cost[light], float(total[light])
+            own = 0.25 * _OWN_SHADE_COST * ratio[:, scene, None]
+            half = (distance[light] + own).min(axis=1)
+    order = np.argsort(best, axis=1)[:, :2]
+    near, next_one = np.sqrt(np.maximum(np.take_along_axis(best, order, axis=1), 0.0)).T
+    apart = half[np.arange(len(colors)), order[:, 0]]
+    return ColorFit(
+        tuple(_NAMES[index] for index in order[:, 0]),
+        tuple(_NAMES[index] for index in order[:, 1]),
+        np.sqrt(np.maximum(apart, 0.0)),
+        next_one - near,
+    )
 
 
 def _lab(rgb: Array) -> Array:

@@ -36,11 +36,12 @@ from .frame_pairing import FramePairing, StampedSet
 from .observation import Observation
 from .parameters import PARAMETERS, config_from_parameters
 from .pipeline import Perceived, Perception
+from .segment import SEGMENTATION_TOPIC
 from .visual_module.weights import DEFAULT_WEIGHTS, load_weights
 
 #: Encodings of the images of a frame.
 ENCODINGS: Final = {"image": "rgb8", "depth": "32FC1", "segmentation": "16UC1"}
-#: The four messages that make a frame.
+#: The messages that make a frame; labels only where masks are given.
 TOPICS: Final = {
     "image": "camera/image_raw",
     "depth": "camera/depth/image_raw",
@@ -55,8 +56,9 @@ class PerceptionNode(Node):
     """From camera images to scene graphs.
 
     Subscribes:
-        camera/image_raw, camera/depth/image_raw, camera/segmentation (sensor_msgs/Image) and
-            camera/camera_info (sensor_msgs/CameraInfo): paired by equal stamps; only the newest
+        camera/image_raw, camera/depth/image_raw (sensor_msgs/Image), camera/camera_info
+            (sensor_msgs/CameraInfo) and, where the parameter mask_source says so,
+            camera/segmentation (sensor_msgs/Image): paired by equal stamps; only the newest
             complete frame is interpreted
         camera/extrinsics (geometry_msgs/TransformStamped), latched or sent again and again; these
             and the images are heard reliable or best effort, as they are published
@@ -80,7 +82,11 @@ class PerceptionNode(Node):
         weights = Path(self._values["weights"] or DEFAULT_WEIGHTS)
         module = load_weights(weights)
         self._perception = Perception(module, config_from_parameters(self._values))
-        self._pairing = FramePairing(tuple(TOPICS))
+        given = self._values["mask_source"] == SEGMENTATION_TOPIC
+        self._topics = {
+            stream: topic for stream, topic in TOPICS.items() if given or stream != "segmentation"
+        }
+        self._pairing = FramePairing(tuple(self._topics))
         self._info: CameraInfo | None = None
         self._extrinsics: TransformStamped | None = None
         self._status: GraphStatus | None = None
@@ -88,8 +94,8 @@ class PerceptionNode(Node):
         self._incomplete_since: float | None = None
         self._create_interfaces()
         self.get_logger().info(
-            f"weights {weights} (backbone {module.backbone}), "
-            f"{len(self._perception.config.stack_positions)} places"
+            f"masks from {self._values['mask_source']}, weights {weights} "
+            f"(backbone {module.backbone}), {len(self._perception.config.stack_positions)} places"
         )
 
     def _create_interfaces(self) -> None:
@@ -97,7 +103,7 @@ class PerceptionNode(Node):
         self._drawings = self.create_publisher(Image, "scene_graph/image", SENSOR_DATA)
         self._markers = self.create_publisher(MarkerArray, "scene_graph/markers", RELIABLE)
         frames = MutuallyExclusiveCallbackGroup()
-        for stream, topic in TOPICS.items():
+        for stream, topic in self._topics.items():
             kind = Image if stream in ENCODINGS else CameraInfo
             AdaptiveSubscription(self, kind, topic, self._receiver(stream), NEWEST, frames)
         AdaptiveSubscription(
@@ -143,7 +149,7 @@ class PerceptionNode(Node):
             return
         self._incomplete_since = now
         header = Header(stamp=self.get_clock().now().to_msg(), frame_id=self._frame_id())
-        sentence = self._pairing.problem(TOPICS)
+        sentence = self._pairing.problem(self._topics)
         self._publish(self._perception.rejected(GraphStatus.BAD_IMAGE, sentence), header, now)
 
     def _on_goal_image(
@@ -170,7 +176,9 @@ class PerceptionNode(Node):
         header = Header(stamp=messages["image"].header.stamp, frame_id=self._frame_id())
         rgb = None
         try:
-            rgb, depth, labels = (self._pixels(stream, messages[stream]) for stream in ENCODINGS)
+            rgb, depth = (self._pixels(stream, messages[stream]) for stream in ("image", "depth"))
+            given = messages.get("segmentation")
+            labels = None if given is None else self._pixels("segmentation", given)
             perceived = self._perception.perceive(Observation(rgb, labels, depth, self._camera()))
         except (ImageError, BadImageError) as error:
             perceived = self._perception.rejected(GraphStatus.BAD_IMAGE, str(error))

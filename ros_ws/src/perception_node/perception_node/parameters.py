@@ -14,6 +14,7 @@ from tamp_runtime.parameters import ParameterSpec
 
 from .config import PerceptionConfig
 from .places import Points
+from .segment import SEGMENTERS
 
 #: Least distance between two places [m].
 MIN_GAP: Final = 0.02
@@ -41,12 +42,27 @@ def _positions_problem(values: Any) -> str:
     return ""
 
 
+def _mask_source_problem(value: Any) -> str:
+    """One of rgbd, segmentation_topic."""
+    if value in SEGMENTERS:
+        return ""
+    return f"mask_source is {value!r}; there are {', '.join(SEGMENTERS)}"
+
+
 PARAMETERS: Final = (
     ParameterSpec(
         "weights",
         "",
         "weights file of the visual module (safetensors); empty: those of the package",
         read_only=True,
+    ),
+    ParameterSpec(
+        "mask_source",
+        _DEFAULT.mask_source,
+        "where the blocks' pixels come from: rgbd (found in colour and depth) or "
+        "segmentation_topic (camera/segmentation, of a detector of your own)",
+        read_only=True,
+        check=_mask_source_problem,
     ),
     ParameterSpec(
         "threads",
@@ -114,12 +130,21 @@ PARAMETERS: Final = (
         minimum=0.01,
         maximum=1.0,
     ),
+    ParameterSpec(
+        "max_doubt",
+        _DEFAULT.limits.doubt,
+        "standard deviation with which a block's centre may be known in a graph that may be "
+        "planned on [m]",
+        minimum=0.0005,
+        maximum=0.1,
+    ),
 )
 
 
 def config_from_parameters(values: Mapping[str, Any]) -> PerceptionConfig:
     """The algorithm's configuration for a full set of parameter values."""
     return PerceptionConfig(
+        mask_source=values["mask_source"],
         stack_positions=positions_from_parameter(values["stack_positions"]),
         min_confidence=values["min_confidence"],
         max_hidden=values["max_hidden"],
@@ -130,5 +155,6 @@ def config_from_parameters(values: Mapping[str, Any]) -> PerceptionConfig:
             place_tolerance=values["place_tolerance"],
             gap=values["support_gap"],
             tilt=values["max_tilt"],
+            doubt=values["max_doubt"],
         ),
     )

@@ -6,9 +6,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from scene_graph import GraphStatus, SceneGraph
 
-from .blocks import find_blocks
+from .blocks import centres, find_blocks, measure
 from .config import PerceptionConfig
 from .errors import BadImageError, NotUprightError, PerceptionError
 from .graph import build_graph
@@ -17,10 +19,16 @@ from .observation import Observation
 from .places import Places, Points, RowOfPlaces
 from .places.occlusion import find_occlusion
 from .places.table import table_problem
-from .segment import Segmenter, Segments, check_segments, given_labels
-from .verdict import judge, judge_empty, judge_not_upright
+from .segment import (
+    SEGMENTERS,
+    Segmenter,
+    Segments,
+    Volume,
+    check_segments,
+    given_labels,
+)
+from .verdict import grain, judge, judge_empty, judge_not_upright
 from .visual_module.coordinates import Locator
-from .visual_module.object_images import object_images
 
 
 @dataclass(frozen=True)
@@ -47,7 +55,7 @@ class Perception:
         self,
         locator: Locator,
         config: PerceptionConfig | None = None,
-        segmenter: Segmenter = given_labels,
+        segmenter: Segmenter | None = None,
         places: Callable[[Points], Places] = RowOfPlaces,
     ) -> None:
         """Puts the parts together.
@@ -55,7 +63,7 @@ class Perception:
         Args:
             locator: finds coordinates: the visual module G, see :func:`load_weights`.
             config: what is known of the scene beforehand, and what is accepted.
-            segmenter: finds the blocks' pixels.
+            segmenter: finds the blocks' pixels; None: the one that ``config.mask_source`` names.
             places: makes of ``config.stack_positions`` how they lie.
         """
         self.locator = locator
@@ -88,25 +96,35 @@ class Perception:
         check_segments(observation.rgb, segments)
         if problem := table_problem(observation, segments, places):
             raise BadImageError(problem)
-        occlusion = find_occlusion(observation, segments, places, config)
         if len(segments) == 0:
+            occlusion = find_occlusion(observation, segments, places, config)
             return self.rejected(*judge_empty(occlusion, config))
-        coordinates = self.locator.locate(object_images(observation.rgb, segments))
-        standing = places.stand(observation, segments, coordinates)
+        coordinates = self.locator.locate(self.locator.images(observation.rgb, segments))
         try:
-            blocks = find_blocks(observation, segments, standing)
+            surfaces = measure(observation, segments)
         except NotUprightError as error:
+            occlusion = find_occlusion(observation, segments, places, config)
             parts = [segment.part for segment in segments]
             color = color_names(mean_colors(observation.rgb, parts))[error.index]
             sentence = f"the {color} block {error}"
             return self.rejected(*judge_not_upright(sentence, occlusion, config))
+        standing = places.stand(observation, segments, coordinates, centres(surfaces))
+        blocks = find_blocks(observation, segments, standing, surfaces)
+        occlusion = find_occlusion(observation, segments, places, config, blocks.poses)
         names = name_blocks(observation.rgb, segments, blocks.shapes, standing.stacks)
         graph = build_graph(observation, segments, occlusion, coordinates, standing, blocks, names)
         verdict = judge(graph, occlusion, standing, blocks, names, config)
+        if verdict.status is not GraphStatus.CONFIDENT:
+            verdict = verdict._replace(message=verdict.message + grain(observation.rgb))
         return Perceived(graph, *verdict, segments)
 
     def _segments(self, observation: Observation) -> Segments:
-        segments = self.segmenter(observation)
+        segmenter = self.segmenter or SEGMENTERS[self.config.mask_source]
+        if observation.depth is None and self.segmenter is None:
+            segmenter = given_labels  # a goal image, drawn by hand
+        feet = np.array([place.position_world for place in self.places.places])
+        volume = Volume.over(feet, self.config.column_height) if len(feet) else None
+        segments = segmenter(observation, volume)
         if segments.label_image.shape != observation.rgb.shape[:2]:
             raise BadImageError(
                 f"the segmenter's labels have the shape {segments.label_image.shape}, "

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from scene_graph import GraphStatus, SceneGraph, base_name
 
@@ -18,6 +19,10 @@ from .config import PerceptionConfig, StabilityLimits
 from .names import Names
 from .places import Standing
 from .places.occlusion import Occlusion
+from .segment.facets import color_noise
+
+#: Noise of colours from which on it may be why a graph is refused [0..255].
+GRAIN: Final = 8.0
 
 _TIDY_UP: Final = "look again, or tidy up by hand"
 
@@ -44,15 +49,30 @@ def judge(
         return Verdict(GraphStatus.UNSTABLE, f"{standing.problem}; put every block on a place")
     if sentence := instability(blocks, names.names, standing, config.limits):
         return Verdict(GraphStatus.UNSTABLE, sentence)
+    if names.doubt:
+        return Verdict(GraphStatus.LOW_CONFIDENCE, names.doubt)
+    if sentence := doubtful(blocks, names.names, config.limits):
+        return Verdict(GraphStatus.LOW_CONFIDENCE, sentence)
     if graph.confidence < config.min_confidence:
         worst = min(graph.objects, key=lambda item: item.confidence)
         return Verdict(
             GraphStatus.LOW_CONFIDENCE,
             f"the visual module reproduces {worst.name} with a confidence of only "
             f"{worst.confidence:.2f} (required: {config.min_confidence:.2f}); look again, "
-            "check camera/segmentation, or train it on such scenes",
+            "check the picture and its masks, or train it on such scenes",
         )
     return Verdict(GraphStatus.CONFIDENT)
+
+
+def grain(rgb: NDArray[np.uint8]) -> str:
+    """What is added to a refusal of a picture that is too grainy to rely on; else nothing."""
+    noise = color_noise(rgb)
+    if noise < GRAIN:
+        return ""
+    return (
+        f"; the colours of camera/image_raw have a noise of {noise:.0f} grey levels: "
+        "give more light, or less gain"
+    )
 
 
 def judge_empty(occlusion: Occlusion, config: PerceptionConfig) -> Verdict:
@@ -112,6 +132,19 @@ def instability(
                 return f"{name} overhangs {under} by {1000 * offset:.0f} mm; {_TIDY_UP}"
             below, under = block, name
     return ""
+
+
+def doubtful(blocks: Blocks, names: tuple[str, ...], limits: StabilityLimits) -> str:
+    """A sentence about the block whose centre is known worst, or an empty string."""
+    deviations = [max(block.deviation[:2]) for block in blocks.measured]
+    if not deviations or max(deviations) <= limits.doubt:
+        return ""
+    worst = int(np.argmax(deviations))
+    return (
+        f"how far {names[worst]} reaches back is not seen: its centre is known to "
+        f"{1000 * deviations[worst]:.0f} mm only (required: {1000 * limits.doubt:.0f} mm); look "
+        "from another side or from higher up"
+    )
 
 
 def _height_text(gap: float, under: str, on_table: bool) -> str:

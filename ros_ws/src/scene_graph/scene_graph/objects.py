@@ -66,7 +66,7 @@ class SceneObject:
         position_world: centre (x, y, z) [m].
         quaternion_world: orientation (x, y, z, w), unit norm.
         size: full extents along the block's own axes (x, y, z) [m].
-        label: instance label in the segmentation image; 0 if it did not come from an image.
+        label: of its mask in the picture; 0 if it did not come from an image.
         coordinates: φ = (a, b) of the visual module G, from the bottom-left corner, in 0..1.
         confidence: IoU(u, ũ) of A.2.5, lowered by hidden parts, in 0..1.
     """

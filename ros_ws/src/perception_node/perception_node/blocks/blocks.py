@@ -5,12 +5,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from perception_node.observation import Observation
 from perception_node.places import Standing
 from perception_node.segment import Segments
 from scene_graph import BlockPose
 
-from .measure import measure_blocks
+from .evidence import depth_noise
+from .measure import BlockSurface, measure_blocks
 from .outline import shape_from_outline
 from .pose import MeasuredBlock, pose_blocks
 
@@ -35,8 +39,8 @@ class Blocks:
         return (None,) * len(self.shapes)
 
 
-def find_blocks(observation: Observation, segments: Segments, standing: Standing) -> Blocks:
-    """Measures and poses the blocks; without depth or camera, only their shapes are told.
+def measure(observation: Observation, segments: Segments) -> tuple[BlockSurface, ...]:
+    """Each block by itself, in the order of the segments; nothing without depth or camera.
 
     Raises:
         BadImageError: if too little depth of a block is known.
@@ -44,8 +48,26 @@ def find_blocks(observation: Observation, segments: Segments, standing: Standing
     """
     depth, camera = observation.depth, observation.camera
     if depth is None or camera is None:
+        return ()
+    return measure_blocks(segments, depth, camera, depth_noise(depth))
+
+
+def centres(surfaces: tuple[BlockSurface, ...]) -> NDArray[np.float64] | None:
+    """Centres of measured blocks, shape (N, 3) [m]; None of none."""
+    if not surfaces:
+        return None
+    return np.array([(*item.position, 0.5 * (item.low + item.high)) for item in surfaces])
+
+
+def find_blocks(
+    observation: Observation,
+    segments: Segments,
+    standing: Standing,
+    surfaces: tuple[BlockSurface, ...],
+) -> Blocks:
+    """The blocks in their stacks; where they were not measured, only their shapes are told."""
+    if not surfaces:
         shapes = tuple(shape_from_outline(observation.rgb, segment.part) for segment in segments)
         return Blocks(shapes)
-    surfaces = measure_blocks(segments, depth, camera)
     measured = pose_blocks(surfaces, standing.stacks, standing.table_heights)
     return Blocks(tuple(block.shape for block in measured), measured)

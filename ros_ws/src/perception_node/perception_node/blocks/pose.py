@@ -1,26 +1,46 @@
 # SPDX-License-Identifier: Apache-2.0
 """Poses and sizes of all blocks of a scene, from what was measured of each.
 
-An edge is known to a pixel (2 mm), a tower's height nearly exactly, because its top face is seen.
-Blocks in a stack stand on one another and the lowest on the table, and blocks that could be of one
-size, after all that was measured, are taken to be: together this gives centres to about 0.5 mm.
+Measurements are normal distributions; what else is known conditions them: blocks of a stack stand
+on one another and the lowest on the table; and where all that is seen of all blocks could be cubes,
+or cubes of one size, they are taken to be.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
-from scene_graph import BOX, BlockPose
+from scene_graph import BOX, SPHERE, BlockPose
 
-from .surface import BlockSurface, Interval, block_frame
+from .measure import BlockSurface
 
-#: How much intervals may miss one another and still be taken to agree [m]: with exact depth and
-#: calibration, and else.
-AGREEMENT: Final = (0.0006, 0.002)
+Array = NDArray[np.float64]
+
+#: Standard deviation of the table's height, and of how much a block misses what it stands on [m].
+CONTACT: Final = 5e-4
+#: A block's lower end may be so many standard deviations, and this much more, from what it is
+#: taken to stand on [m].
+STANDS: Final = (3.0, 0.004)
+#: Sizes known to this standard deviation say whether blocks may be cubes [m].
+TELLS: Final = 0.0025
+#: Sizes that are known better than SHARP agree within so many standard deviations and this much
+#: more [m]. Others are those of edges that are hardly seen, and less certain than they state: each
+#: may be off by so many standard deviations, and all of a scene by so many as a root mean square.
+SHARP: Final = 0.001
+AGREES: Final = (2.5, 0.0005)
+HARDLY_SEEN: Final = (4.5, 3.0)
+#: Standard deviation of the edges of what is taken for a cube, and for one of equal cubes [m].
+CUBE: Final = 8e-4
+EQUAL: Final = 3e-4
+
+_X, _Y, _YAW, _ALONG, _ACROSS, _LOW, _HIGH = np.eye(7)
+#: The three edges of a block, as sums of its parameters.
+_EDGES: Final = (_ALONG, _ACROSS, _HIGH - _LOW)
 
 
 @dataclass(frozen=True)
@@ -31,11 +51,32 @@ class MeasuredBlock:
         shape: ``box``, ``cylinder`` or ``sphere``.
         pose: in world; its yaw is in -π/4..π/4, as a box looks the same after a quarter turn.
         tilt: see :class:`BlockSurface` [rad].
+        deviation: standard deviations of x, y, z of the centre [m], of yaw [rad] and of the size
+            along its own x, y, z [m], shape (7,).
     """
 
     shape: str
     pose: BlockPose
     tilt: float = 0.0
+    deviation: tuple[float, ...] = (0.0,) * 7
+
+
+@dataclass
+class _Estimate:
+    """A normal distribution of x, y, yaw, two widths, low and high, shapes (7,) and (7, 7)."""
+
+    mean: Array
+    covariance: Array
+
+    def of(self, row: Array) -> tuple[float, float]:
+        """A sum of parameters, and its standard deviation."""
+        return float(row @ self.mean), max(float(row @ self.covariance @ row), 0.0) ** 0.5
+
+    def condition(self, row: Array, value: float, deviation: float) -> None:
+        """Takes in that a sum of parameters was found to be a value."""
+        gain = self.covariance @ row / (row @ self.covariance @ row + deviation**2)
+        self.mean = self.mean + gain * (value - row @ self.mean)
+        self.covariance = self.covariance - np.outer(gain, row @ self.covariance)
 
 
 def pose_blocks(
@@ -50,107 +91,94 @@ def pose_blocks(
         stacks: indices into ``surfaces``, from the bottom, of each stack.
         table_heights: z of the surface under each stack [m].
     """
-    vertical = _levels(surfaces, stacks, table_heights)
-    widths = [
-        Interval(item.right.low - item.left.high, item.right.high - item.left.low)
+    estimates = [
+        _Estimate(
+            np.array([*item.position, item.yaw, *item.widths, item.low, item.high]),
+            item.covariance,
+        )
         for item in surfaces
     ]
-    heights = [top - bottom for bottom, top in vertical]
-    cube = _agreed([*widths, *(Interval(h - AGREEMENT[0], h + AGREEMENT[0]) for h in heights)])
-    # If they are cubes, as far as anyone can tell: heights are known better than widths.
-    common = _agreed(widths) if cube is None else float(np.median(heights))
-    return tuple(
-        _posed(surface, *vertical[index], widths[index].middle if common is None else common)
-        for index, surface in enumerate(surfaces)
-    )
+    for stack, table in zip(stacks, table_heights):
+        _stand([estimates[index] for index in stack], table)
+    flat = [estimate for item, estimate in zip(surfaces, estimates) if item.shape != SPHERE]
+    _take_for_cubes([e for item, e in zip(surfaces, estimates) if item.shape == BOX])
+    _take_for_equal(flat)
+    return tuple(_posed(item, estimate) for item, estimate in zip(surfaces, estimates))
 
 
-def _posed(surface: BlockSurface, bottom: float, top: float, width: float) -> MeasuredBlock:
-    half = 0.5 * width
-    y = _overlap(
-        Interval(surface.left.low + half, surface.left.high + half),
-        Interval(surface.right.low - half, surface.right.high - half),
-    )
-    # The depth of the footprint cannot be measured from the front: it is taken to be as wide.
-    local = np.array([surface.front - half, y, 0.5 * (bottom + top)])
-    position = block_frame(surface.yaw) @ local
-    yaw = surface.yaw - np.round(surface.yaw / (np.pi / 2)) * (np.pi / 2)
+def _stand(tower: Iterable[_Estimate], table: float) -> None:
+    """Blocks stand on one another, from the bottom, where they can."""
+    level, doubt, below = table, CONTACT, None
+    for block in tower:
+        low, low_doubt = block.of(_LOW)
+        if abs(low - level) < STANDS[0] * np.hypot(low_doubt, doubt) + STANDS[1]:
+            if below is not None:
+                below.condition(_HIGH, low, float(np.hypot(low_doubt, CONTACT)))
+                level, doubt = below.of(_HIGH)
+            block.condition(_LOW, level, float(np.hypot(doubt, CONTACT)))
+        (level, doubt), below = block.of(_HIGH), block
+
+
+def _take_for_cubes(boxes: Sequence[_Estimate]) -> None:
+    """If every box could be a cube, as far as its edges are known, they all are."""
+    edges = [[box.of(row) for row in _EDGES] for box in boxes]
+    if not _agree([(values, _mean(values)) for values in edges]):
+        return
+    for box in boxes:
+        for row in (_ALONG - _ACROSS, _ALONG - _EDGES[2], _ACROSS - _EDGES[2]):
+            box.condition(row, 0.0, CUBE)
+
+
+def _take_for_equal(blocks: Sequence[_Estimate]) -> None:
+    """If all edges could be of one length, as far as they are known, they are."""
+    edges = [block.of(row) for block in blocks for row in _EDGES]
+    common = _mean(edges)
+    if common is None or not _agree([(edges, common)]):
+        return
+    for block in blocks:
+        for row in _EDGES:
+            block.condition(row, common, EQUAL)
+
+
+#: Values and their standard deviations [m].
+_Values = Sequence[tuple[float, float]]
+
+
+def _mean(values: _Values) -> float | None:
+    """The mean of values; None if not one of them is known well."""
+    if not any(doubt < TELLS for _, doubt in values):
+        return None
+    found, doubt = np.array(values).T
+    weights = 1.0 / (doubt**2 + CONTACT**2)
+    return float(found @ weights / weights.sum())
+
+
+def _agree(groups: Sequence[tuple[_Values, float | None]]) -> bool:
+    """Whether the values of each group can be its mean."""
+    off = []
+    for values, mean in groups:
+        if mean is None:
+            return False
+        found, doubt = np.array(values).T
+        beyond = np.maximum(np.abs(found - mean) - AGREES[1], 0.0) / doubt
+        sharp = doubt < SHARP
+        if (beyond[sharp] > AGREES[0]).any():
+            return False
+        off += list(beyond[~sharp])
+    most, together = HARDLY_SEEN
+    return not off or (max(off) <= most and float(np.sqrt(np.mean(np.square(off)))) <= together)
+
+
+def _posed(surface: BlockSurface, estimate: _Estimate) -> MeasuredBlock:
+    mean = estimate.mean
+    rows = (_X, _Y, 0.5 * (_LOW + _HIGH), _YAW, *_EDGES)
     return MeasuredBlock(
         surface.shape,
         BlockPose(
-            position_world=(float(position[0]), float(position[1]), float(position[2])),
-            yaw=float(yaw) if surface.shape == BOX else 0.0,
-            size=(width, width, top - bottom),
+            position_world=(float(mean[0]), float(mean[1]), float(0.5 * (mean[5] + mean[6]))),
+            yaw=float(mean[2]) if surface.shape == BOX else 0.0,
+            size=(float(mean[3]), float(mean[4]), float(mean[6] - mean[5])),
         ),
         surface.tilt,
+        tuple(estimate.of(row)[1] for row in rows),
     )
-
-
-def _levels(
-    surfaces: Sequence[BlockSurface],
-    stacks: Sequence[Sequence[int]],
-    table_heights: Sequence[float],
-) -> list[tuple[float, float]]:
-    """z of the lower and upper end of every block [m], by the simplest story that fits.
-
-    First: all blocks are of one height and stand on one another. Else the same within one stack.
-    Else every block by its own edges, where neighbours share one if they can.
-    """
-    levels = [(item.bottom.middle, item.top.middle) for item in surfaces]
-    towers = [([surfaces[i] for i in stack], table) for stack, table in zip(stacks, table_heights)]
-    common = _common_height(towers)
-    for stack, tower in zip(stacks, towers):
-        table = tower[1]
-        height = _common_height([tower]) if common is None else common
-        if height is not None:
-            for level, index in enumerate(stack):
-                levels[index] = (table + level * height, table + (level + 1) * height)
-            continue
-        below = table
-        for index in stack:
-            bottom, top = surfaces[index].bottom, surfaces[index].top
-            stands = bottom.low - AGREEMENT[-1] <= below <= bottom.high + AGREEMENT[-1]
-            levels[index] = (below if stands else bottom.middle, top.middle)
-            below = top.middle
-    return levels
-
-
-def _common_height(towers: Sequence[tuple[list[BlockSurface], float]]) -> float | None:
-    """The height of every block [m], if all could be of one height and stand on one another.
-
-    Args:
-        towers: blocks from the bottom, and the height of the table [m].
-    """
-    for slack in AGREEMENT:
-        found = []
-        for blocks, table in towers:
-            for level, item in enumerate(blocks):
-                for count, edge in ((level, item.bottom), (level + 1, item.top)):
-                    low, high = edge.low - table - slack, edge.high - table + slack
-                    if count:
-                        found.append(Interval(low / count, high / count))
-                    elif not low <= 0.0 <= high:  # does not stand on the table
-                        found.append(Interval(np.inf, -np.inf))
-        height = _agreed(found, slack=0.0)
-        if height is not None:
-            return height
-    return None
-
-
-def _agreed(intervals: Sequence[Interval], slack: float = AGREEMENT[0]) -> float | None:
-    """The middle of what all intervals allow, None if they exclude one another."""
-    if not intervals:
-        return None
-    low = max(item.low for item in intervals) - slack
-    high = min(item.high for item in intervals) + slack
-    return 0.5 * (low + high) if low <= high else None
-
-
-def _overlap(first: Interval, second: Interval) -> float:
-    """The middle of the intersection; without one, between the two, nearer to the sharper."""
-    low, high = max(first.low, second.low), min(first.high, second.high)
-    if low <= high:
-        return 0.5 * (low + high)
-    first_doubt, second_doubt = first.high - first.low + 1e-6, second.high - second.low + 1e-6
-    weight = second_doubt / (first_doubt + second_doubt)
-    return weight * first.middle + (1.0 - weight) * second.middle

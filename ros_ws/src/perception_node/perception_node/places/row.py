@@ -13,6 +13,8 @@ from typing import Final
 import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import linear_sum_assignment
+from scipy.sparse.csgraph import connected_components
 
 from perception_node.camera import PinholeCamera
 from perception_node.clustering import cluster_on_line
@@ -30,6 +32,10 @@ NOISE_WIDTH: Final = 0.016
 NOISE_ROWS: Final = 0.016
 
 
+#: Blocks whose axes are nearer than this, seen from above, are of one stack, unless places are [m].
+JOINED: Final = 0.04
+
+
 class RowOfPlaces:
     """Places side by side on the table.
 
@@ -41,13 +47,22 @@ class RowOfPlaces:
         self.places = tuple(Place(i, position) for i, position in enumerate(positions_world))
 
     def stand(
-        self, observation: Observation, segments: Segments, coordinates: Coordinates
+        self,
+        observation: Observation,
+        segments: Segments,
+        coordinates: Coordinates,
+        centres_world: NDArray[np.float64] | None = None,
     ) -> Standing:
-        """The stacks by horizontal coordinate, each by vertical coordinate, and their places.
+        """The stacks and their places: by where the blocks are measured on the table, if they are.
+
+        Else, of a picture alone, by horizontal coordinate, each by vertical coordinate.
 
         Raises:
             BadImageError: if the camera does not see the places in order from the left.
         """
+        if centres_world is not None and observation.camera is not None and self.places:
+            self._columns(observation.camera)
+            return self._stand_on_table(centres_world)
         count = min(count_stacks(segments.union()), len(segments))
         stacks = stacks_from_coordinates(coordinates.corners, count)
         if observation.camera is None or not self.places:
@@ -59,6 +74,30 @@ class RowOfPlaces:
             return self._without_places(stacks, str(error))
         return Standing(
             with_empty_places(stacks, assigned, len(self.places)),
+            tuple(place.position_world[2] for place in self.places),
+            self.places,
+        )
+
+    def _stand_on_table(self, centres_world: NDArray[np.float64]) -> Standing:
+        feet = self._positions()
+        joined = JOINED
+        if len(feet) > 1:
+            gaps = np.linalg.norm(feet[:, None, :2] - feet[None, :, :2], axis=-1)
+            joined = min(joined, 0.5 * float(gaps[~np.eye(len(feet), dtype=bool)].min()))
+        apart = np.linalg.norm(centres_world[:, None, :2] - centres_world[None, :, :2], axis=-1)
+        count, group_of = connected_components(apart < joined, directed=False)
+        stacks = []
+        for group in range(count):
+            members = np.flatnonzero(group_of == group)
+            stacks.append(tuple(int(i) for i in members[np.argsort(centres_world[members, 2])]))
+        if count > len(feet):
+            return self._without_places(tuple(stacks), too_many(count, len(feet)))
+        middles = np.array([centres_world[list(stack), :2].mean(axis=0) for stack in stacks])
+        squares = ((middles[:, None] - feet[None, :, :2]) ** 2).sum(axis=-1)
+        rows, places = linear_sum_assignment(squares)
+        by_place = [stacks[row] for row in rows]
+        return Standing(
+            with_empty_places(by_place, [int(place) for place in places], len(feet)),
             tuple(place.position_world[2] for place in self.places),
             self.places,
         )
@@ -161,7 +200,7 @@ def assign_places(columns: ArrayLike, place_columns: ArrayLike) -> list[int]:
     seen, places = np.asarray(columns, dtype=float), np.asarray(place_columns, dtype=float)
     k, m = len(seen), len(places)
     if k > m:
-        raise PlacesError(f"{k} stacks are seen but there are {m} places")
+        raise PlacesError(too_many(k, m))
     best = np.full((k + 1, m + 1), np.inf)  # best[i, j]: i stacks on the first j places
     best[0] = 0.0
     for i in range(1, k + 1):
@@ -176,6 +215,11 @@ def assign_places(columns: ArrayLike, place_columns: ArrayLike) -> list[int]:
             i -= 1
         j -= 1
     return assigned[::-1]
+
+
+def too_many(stacks: int, places: int) -> str:
+    """What is said of more stacks than places."""
+    return f"{stacks} stacks are seen but there are {places} places"
 
 
 def with_empty_places(

@@ -46,13 +46,18 @@ class Places(Protocol):
         ...
 
     def stand(
-        self, observation: Observation, segments: Segments, coordinates: Coordinates
+        self,
+        observation: Observation,
+        segments: Segments,
+        coordinates: Coordinates,
+        centres_world: NDArray[np.float64] | None = None,
     ) -> Standing:
         """Which blocks stand on one another, and on which place.
 
         Args:
             segments: N blocks, at least one.
             coordinates: theirs, in the same order.
+            centres_world: of the blocks as measured, shape (N, 3) [m]; None without depth.
 
         Raises:
             PerceptionError: if places and camera do not fit together.

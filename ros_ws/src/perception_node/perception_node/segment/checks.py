@@ -39,6 +39,7 @@ def check_segments(rgb: NDArray[np.uint8], segments: Segments) -> None:
     Raises:
         BadImageError: names the label, and what to check.
     """
+    same_pixels = f"shows the same pixels as {segments.source}"
     for segment in segments:
         left, top, width, height = cv2.boundingRect(segment.part.astype(np.uint8))
         box = np.s_[top : top + height, left : left + width]
@@ -51,17 +52,17 @@ def check_segments(rgb: NDArray[np.uint8], segments: Segments) -> None:
         if (others := _others(labels, outline, segment.label)) > MAX_OTHERS:
             raise BadImageError(
                 f"{others:.0%} of what label {segment.label} surrounds has other labels: they are "
-                "scattered; check camera/segmentation"
+                f"scattered; check {segments.source}, and that camera/image_raw {same_pixels}"
             )
         if _color_range(rgb[box][part]) > MAX_COLOR_RANGE:
             raise BadImageError(
                 f"the pixels of label {segment.label} have no common colour; check "
-                "camera/image_raw, and that it shows the same pixels as camera/segmentation"
+                f"camera/image_raw, and that it {same_pixels}"
             )
         if _edge_share(rgb[around], outline, labels == 0) < MIN_EDGE:
             raise BadImageError(
                 f"what label {segment.label} covers has the colour of what is around it; check "
-                "camera/image_raw, and that it shows the same pixels as camera/segmentation"
+                f"camera/image_raw, and that it {same_pixels}"
             )
 
 

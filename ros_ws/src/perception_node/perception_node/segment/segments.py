@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from perception_node.observation import Observation
 
+from .volume import Volume
+
 Mask = NDArray[np.bool_]
 
 #: Labels with fewer pixels than this part of the image are specks, not blocks.
@@ -44,13 +46,17 @@ class Segments:
     Attributes:
         label_image: the label of every pixel, also of specks; 0 = none, shape (height, width).
         blocks: those larger than a speck, labels ascending.
+        source: what to check where they are wrong.
     """
 
     label_image: NDArray[np.integer]
     blocks: tuple[Segment, ...]
+    source: str = "camera/segmentation"
 
     @classmethod
-    def from_labels(cls, label_image: NDArray[np.integer]) -> Segments:
+    def from_labels(
+        cls, label_image: NDArray[np.integer], source: str = "camera/segmentation"
+    ) -> Segments:
         """The segments of an image of non-negative labels, shape (height, width)."""
         counts = np.bincount(label_image.ravel())
         counts[:1] = 0
@@ -58,7 +64,7 @@ class Segments:
         for label in np.flatnonzero(counts >= max(1.0, MIN_AREA * label_image.size)):
             mask = label_image == label
             blocks.append(Segment(int(label), mask, largest_part(mask)))
-        return cls(label_image, tuple(blocks))
+        return cls(label_image, tuple(blocks), source)
 
     def __len__(self) -> int:
         return len(self.blocks)
@@ -77,8 +83,11 @@ class Segments:
 class Segmenter(Protocol):
     """Whatever finds the blocks of a picture."""
 
-    def __call__(self, observation: Observation, /) -> Segments:
+    def __call__(self, observation: Observation, volume: Volume | None, /) -> Segments:
         """The segments of a checked observation, of its image's size.
+
+        Args:
+            volume: in which blocks can be; None where the places are unknown.
 
         Raises:
             PerceptionError: if the observation lacks what this segmenter needs.

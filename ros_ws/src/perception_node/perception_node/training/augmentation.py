@@ -6,11 +6,17 @@ All of it is self-supervised: the target is the undamaged image at the place whe
 
 from __future__ import annotations
 
+import math
+from typing import Final
+
 import torch
 from torch import Tensor
 from torch.nn import functional
 
 from .dataset import CROP_SIZE
+
+#: No object is made narrower or lower than this [px].
+MIN_SIDE: Final = 5
 
 
 def recolored(pixels: Tensor, generator: torch.Generator) -> Tensor:
@@ -27,6 +33,37 @@ def recolored(pixels: Tensor, generator: torch.Generator) -> Tensor:
     lift = 0.5 * torch.rand(n, 3, 1, 1, generator=generator)
     gain = 0.5 + 0.6 * torch.rand(n, 1, 1, 1, generator=generator)
     return ((mixed + lift * (pixels.amax(1, keepdim=True))) * gain).clamp(0.0, 1.0) * present
+
+
+def stretched(
+    pixels: Tensor, sizes: Tensor, factor: float, generator: torch.Generator
+) -> tuple[Tensor, Tensor]:
+    """Crops made wider or narrower, and higher or lower, as blocks of other shapes would be.
+
+    Args:
+        pixels: in 0..1, shape (n, channels, CROP_SIZE, CROP_SIZE), object at the bottom left.
+        sizes: width and height of the objects [px], shape (n, 2).
+        factor: both are divided by up to this, and multiplied by up to its root, each by itself.
+
+    Returns:
+        Pixels and sizes.
+    """
+    low, high = -math.log(factor), 0.5 * math.log(factor)
+    drawn = torch.exp(low + (high - low) * torch.rand(sizes.shape, generator=generator))
+    wanted = (sizes * drawn).round().clamp(MIN_SIDE, CROP_SIZE).long()
+    ratio = sizes / wanted
+    steps = torch.arange(CROP_SIZE) + 0.5
+    # Where each pixel comes from, in 0..CROP_SIZE from the left and from the bottom.
+    x = steps * ratio[:, :1]
+    up = (CROP_SIZE - steps) * ratio[:, 1:]
+    outside = (steps[None, :] > wanted[:, :1])[:, None] | (
+        (CROP_SIZE - steps)[None, :] > wanted[:, 1:]
+    )[:, :, None]
+    columns = (2.0 * x / CROP_SIZE - 1.0)[:, None].expand(-1, CROP_SIZE, -1)
+    rows = (1.0 - 2.0 * up / CROP_SIZE)[:, :, None].expand(-1, -1, CROP_SIZE)
+    grid = torch.stack([columns, rows], -1)
+    moved = functional.grid_sample(pixels, grid, mode="nearest", align_corners=False)
+    return moved * ~outside[:, None], wanted
 
 
 def damaged(pixels: Tensor, sizes: Tensor, share: float, generator: torch.Generator) -> Tensor:

@@ -18,7 +18,7 @@ from perception_node.visual_module.grid_sampler import sample
 from perception_node.visual_module.object_images import IMAGE_SIZE
 from perception_node.visual_module.visual_module import TRANSLATION_FACTOR, VisualModule
 
-from .augmentation import damaged, recolored, speckled
+from .augmentation import damaged, recolored, speckled, stretched
 from .dataset import ObjectCrops, place_crops
 from .objective import reconstruction_loss
 
@@ -37,6 +37,8 @@ class TrainingConfig:
         shift_share: share of objects that are put anywhere in the image; the others are shifted
             together with their scene.
         damage_share: share of inputs hit by each kind of damage; targets are never damaged.
+        stretch: objects are made narrower or lower by up to this factor, or wider or higher by its
+            root.
         bfloat16: autocast of the regressor; faster only where the processor has AMX.
         checkpoint_every: steps between checkpoints.
         seed: of weights, batches and augmentation.
@@ -51,6 +53,7 @@ class TrainingConfig:
     translation_factor: float = TRANSLATION_FACTOR
     shift_share: float = 0.7
     damage_share: float = 0.3
+    stretch: float = 2.4
     bfloat16: bool = False
     checkpoint_every: int = 200
     seed: int = 0
@@ -129,7 +132,8 @@ class Trainer:
         picked = full[torch.randint(0, len(full), (config.batch_scenes,), generator=rng)]
         index = (starts[picked, None] + torch.arange(objects)).flatten()
         pixels = recolored(self.crops.pixels[index].float() / 255.0, rng)
-        sizes, corners = self.crops.sizes[index], self.crops.corners[index]
+        pixels, sizes = stretched(pixels, self.crops.sizes[index], config.stretch, rng)
+        corners = self.crops.corners[index]
         corners = _shifted(corners, sizes, objects, config.shift_share, rng)
         target = place_crops(pixels, corners)
         inputs = place_crops(damaged(pixels, sizes, config.damage_share, rng), corners)

@@ -9,6 +9,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from perception_node.segment import Segments
+
 from .object_images import ObjectImages
 
 
@@ -31,6 +33,10 @@ class Coordinates:
 
 class Locator(Protocol):
     """Whatever finds the coordinates of objects: the visual module, or the baseline."""
+
+    def images(self, rgb: NDArray[np.uint8], segments: Segments) -> ObjectImages:
+        """What :meth:`locate` looks at, of a picture of shape (height, width, 3)."""
+        ...
 
     def locate(self, objects: ObjectImages) -> Coordinates:
         """Coordinates of all objects of a scene, in their order."""

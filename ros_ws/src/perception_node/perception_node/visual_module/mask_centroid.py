@@ -7,11 +7,11 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from perception_node.segment import largest_part
+from perception_node.segment import Segments, largest_part
 
 from .coordinates import Coordinates, intersection_over_union
 from .grid_sampler import sample
-from .object_images import ObjectImages
+from .object_images import ObjectImages, object_images
 
 
 class MaskCentroid:
@@ -23,6 +23,10 @@ class MaskCentroid:
 
     def __init__(self, largest_part_only: bool = False) -> None:
         self.largest_part_only = largest_part_only
+
+    def images(self, rgb: NDArray[np.uint8], segments: Segments) -> ObjectImages:
+        """One image of the whole scene per object."""
+        return object_images(rgb, segments)
 
     def locate(self, objects: ObjectImages) -> Coordinates:
         """Coordinates of all objects of a scene: the centroids of their masks."""
@@ -38,10 +42,11 @@ class MaskCentroid:
             torch.from_numpy((moved / size).astype(np.float32)),
             2.0,
         )
+        in_scene = objects.in_scene(centroids / size)
         return Coordinates(
-            phi=centroids / size,
-            corners=centroids / size,
-            centres=centroids / size,
+            phi=in_scene,
+            corners=in_scene,
+            centres=in_scene,
             iou=intersection_over_union(objects.coverage, reconstructed[:, 0].numpy()),
         )
 

@@ -15,6 +15,8 @@ from perception_node.segment import Segments
 
 #: Side of the square images that the visual module works on [px] (5.2.1).
 IMAGE_SIZE: Final = 128
+#: How long the longer side of an object is in its view [px].
+BLOCK_SIDE: Final = 16
 Mask = NDArray[np.bool_]
 
 
@@ -29,6 +31,9 @@ class ObjectImages:
         default_images: u_i^def, the object's own pixels at the bottom-left corner, as ``images``.
         default_coverage: the same for ``coverage``.
         crop_sizes: width and height of the object in ``default_images``, shape (N, 2) [px].
+        origins: bottom-left corners of the images in the scene's picture, as parts of its longer
+            side from its own bottom-left corner, shape (N, 2).
+        sides: how long the images' sides are there, as parts of that side, shape (N,).
     """
 
     images: NDArray[np.float32]
@@ -36,9 +41,18 @@ class ObjectImages:
     default_images: NDArray[np.float32]
     default_coverage: NDArray[np.float32]
     crop_sizes: NDArray[np.intp]
+    origins: NDArray[np.float64]
+    sides: NDArray[np.float64]
 
     def __len__(self) -> int:
         return len(self.images)
+
+    def in_scene(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points of the N images, parts of their side, as parts of the scene's longer side, (N, 2).
+
+        Both from the bottom-left corner, (right, up).
+        """
+        return self.origins + points * self.sides[:, None]
 
 
 def object_images(
@@ -86,7 +100,65 @@ def object_images(
         default_images=default_images,
         default_coverage=default_coverage,
         crop_sizes=crop_sizes,
+        origins=np.zeros((count, 2)),
+        sides=np.ones(count),
     )
+
+
+def object_views(
+    rgb: NDArray[np.uint8], segments: Segments, size: int = IMAGE_SIZE, block: int = BLOCK_SIDE
+) -> ObjectImages:
+    """One image per object, in which it is as large as any other: G's input, free of scale.
+
+    A window of the scene is scaled so that the object's longer side fills ``block`` pixels. Windows
+    lie on a grid of a quarter of their side, so the object is somewhere in the middle of it.
+
+    Args:
+        rgb: shape (height, width, 3).
+        segments: the objects' masks, shape (height, width).
+        size: side of the images [px].
+    """
+    count, longer = len(segments), max(rgb.shape[:2])
+    images = np.zeros((count, 3, size, size), np.float32)
+    coverage = np.zeros((count, size, size), np.float32)
+    default_images, default_coverage = np.zeros_like(images), np.zeros_like(coverage)
+    crop_sizes, origins = np.zeros((count, 2), np.intp), np.zeros((count, 2))
+    sides = np.zeros(count)
+    for index, segment in enumerate(segments):
+        left, top, width, height = cv2.boundingRect(segment.part.view(np.uint8))
+        side = max(4, round(max(width, height) * size / block))
+        step = max(1, side // 4)
+        first = tuple(
+            (begin + extent // 2 - side // 2) // step * step
+            for begin, extent in ((left, width), (top, height))
+        )
+        window = _window(segment.mask, first, side)
+        image, part = _scaled(_window(rgb, first, side), window, (size, size))
+        images[index], coverage[index] = image.transpose(2, 0, 1), part
+        if segment.part is not segment.mask:
+            window = _window(segment.part, first, side)
+            image, part = _scaled(_window(rgb, first, side), window, (size, size))
+        rows, columns = np.flatnonzero(part.any(1)), np.flatnonzero(part.any(0))
+        tight = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        high, wide = part[tight].shape
+        default_images[index, :, size - high :, :wide] = image[tight].transpose(2, 0, 1)
+        default_coverage[index, size - high :, :wide] = part[tight]
+        crop_sizes[index] = wide, high
+        origins[index] = first[0] / longer, (rgb.shape[0] - first[1] - side) / longer
+        sides[index] = side / longer
+    return ObjectImages(
+        images, coverage, default_images, default_coverage, crop_sizes, origins, sides
+    )
+
+
+def _window(image: NDArray[Any], first: tuple[int, ...], side: int) -> NDArray[Any]:
+    """A square of an image from the pixel (column, row) on; zero beyond its borders."""
+    out = np.zeros((side, side, *image.shape[2:]), image.dtype)
+    left, top = max(first[0], 0), max(first[1], 0)
+    part = image[top : max(first[1] + side, 0), left : max(first[0] + side, 0)]
+    row, column = top - first[1], left - first[0]
+    out[row : row + part.shape[0], column : column + part.shape[1]] = part
+    return out
 
 
 def _block_sides(rgb: NDArray[np.uint8], size: int) -> tuple[int, int]:

@@ -7,13 +7,16 @@ from typing import Final
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor, nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
+
+from perception_node.segment import Segments
 
 from .coordinate_regressor import DEFAULT_BACKBONE, make_regressor
 from .coordinates import Coordinates, intersection_over_union
 from .grid_sampler import pixels_from_coordinates, sample
-from .object_images import ObjectImages
+from .object_images import ObjectImages, object_images, object_views
 
 #: Factor of the matrix α; 2 lets φ in 0..1 reach the whole image, where the thesis has 1.6.
 TRANSLATION_FACTOR: Final = 2.0
@@ -54,6 +57,11 @@ class VisualModule(nn.Module):
                 _fold_normalisation(block)
         return self.to(memory_format=torch.channels_last)
 
+    def images(self, rgb: NDArray[np.uint8], segments: Segments) -> ObjectImages:
+        """Views of the objects at one scale, or of the whole scene for what knows places only."""
+        scale_free = self.backbone == DEFAULT_BACKBONE
+        return (object_views if scale_free else object_images)(rgb, segments)
+
     @torch.inference_mode()
     def locate(self, objects: ObjectImages) -> Coordinates:
         """Coordinates of all objects of a scene, in one batch. Call ``eval()`` first."""
@@ -65,11 +73,12 @@ class VisualModule(nn.Module):
         phi, reconstructed = self(images, default)
         size = images.shape[-1]
         moved = pixels_from_coordinates(phi, size, self.translation_factor)
-        corners = moved.double().numpy() / size
+        corners = objects.in_scene(moved.double().numpy() / size)
+        centres = moved.double().numpy() / size + 0.5 * objects.crop_sizes / size
         return Coordinates(
-            phi=phi.clamp(0.0, 1.0).double().numpy(),
+            phi=np.clip(2.0 / self.translation_factor * corners, 0.0, 1.0),
             corners=corners,
-            centres=corners + 0.5 * objects.crop_sizes / size,
+            centres=objects.in_scene(centres),
             iou=intersection_over_union(objects.coverage, reconstructed[:, 0].numpy()),
         )
 

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``make eval-perception``: how often the scene graph is right, accepted, or refused and why.
+
+Renders the pictures of each set of :mod:`perception.sets` (seeds from 1000), lets perception
+interpret them, and compares the whole graph, every relation and name, with the simulator's truth.
+``--set`` picks sets by name, ``--n`` so many pictures of each; sets are kept one by one in
+``runs/eval_perception``, so that ``--resume`` goes on with those that are left. Writes
+``benchmarks/results/perception.json``; ``QUICK=1`` takes 30 pictures of each set.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import torch
+from perception.score import Answer, answer_of, refusals, rows_of
+from perception.sets import PictureSet, UnknownSetError, sets_named
+from results_file import Row, print_rows, quick, write_result
+from tqdm import tqdm
+
+from perception_node import load_weights
+from sim_node import World
+
+RUNS = Path("runs/eval_perception")
+#: Pictures that a process is given at once.
+CHUNK = 50
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--set", default="", help="names of sets, with commas between; all of them")
+    parser.add_argument("--n", type=int, help="pictures of each set at most")
+    parser.add_argument("--jobs", type=int, default=2, help="processes")
+    parser.add_argument("--resume", action="store_true", help="keep the sets that are done")
+    options = parser.parse_args()
+    try:
+        chosen = sets_named(options.set)
+    except UnknownSetError as error:
+        print(f"cannot evaluate: {error}", file=sys.stderr)
+        return 2
+    start = time.perf_counter()
+    rows: list[Row] = []
+    refused: dict[str, Any] = {}
+    wrong: dict[str, Any] = {}
+    for item in chosen:
+        count = min(item.count, options.n or (30 if quick() else item.count))
+        answers = _answers(item, count, options.jobs, options.resume)
+        rows += rows_of(item, answers)
+        refused[item.what] = refusals(answers)
+        if seeds := [answer.seed for answer in answers if answer.confident and not answer.right]:
+            wrong[item.what] = seeds
+    print_rows(rows)
+    if options.set or (options.n and not quick()):
+        print("nothing is published: not all pictures of all sets were looked at")
+        return 0
+    details = {"refused": refused, "accepted and wrong, seeds": wrong}
+    print(
+        write_result(
+            "perception", "make eval-perception", rows, time.perf_counter() - start, details
+        )
+    )
+    return 0
+
+
+def _answers(item: PictureSet, count: int, jobs: int, resume: bool) -> list[Answer]:
+    """Of the first pictures of a set; from the file of an earlier run if there is one."""
+    path = RUNS / f"{item.name}.json"
+    if resume and path.is_file():
+        kept = [Answer(**_with_tuples(entry)) for entry in json.loads(path.read_text())]
+        if len(kept) == count:
+            return kept
+    chunks = [range(first, min(first + CHUNK, count)) for first in range(0, count, CHUNK)]
+    found: list[Answer] = []
+    with (
+        ProcessPoolExecutor(jobs, initializer=torch.set_num_threads, initargs=(1,)) as pool,
+        tqdm(total=count, desc=item.name, unit="picture") as progress,
+    ):
+        for part in pool.map(_look, [item.name] * len(chunks), chunks):
+            found += part
+            progress.update(len(part))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_suffix(".partial")
+    partial.write_text(json.dumps([asdict(answer) for answer in found]))
+    partial.replace(path)
+    return found
+
+
+def _look(name: str, numbers: Iterable[int]) -> list[Answer]:
+    """In a process of its own: some pictures of a set."""
+    (item,) = sets_named(name)
+    locator = load_weights()
+    return list(_in_worlds(item, locator, numbers))
+
+
+def _in_worlds(item: PictureSet, locator: Any, numbers: Iterable[int]) -> Iterator[Answer]:
+    drawn = [item.draw(number) for number in numbers]
+    if any(entry.scene is not None for entry in drawn):
+        yield from (answer_of(entry, item, locator) for entry in drawn)
+        return
+    with World() as world:
+        yield from (answer_of(entry, item, locator, world) for entry in drawn)
+
+
+def _with_tuples(entry: dict[str, Any]) -> dict[str, Any]:
+    errors = tuple(tuple(error) for error in entry["errors"])
+    return {**entry, "iou": tuple(entry["iou"]), "errors": errors}
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

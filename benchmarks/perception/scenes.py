@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Draws the scenes of a set: the same number gives the same scene, and nothing else matters."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from tasks.draw import draw_row
+from tasks.family import Row, Viewpoint
+from tasks.view import camera_of
+
+from scene_graph import BASIC_COLORS, BOX, CYLINDER, ROW_OF_THREE, Stacks, object_name
+from sim_node import all_layouts, random_arrangement, random_layout
+
+#: Benchmarks' seeds begin here; nothing is tuned on them.
+FIRST_SEED: Final = 1000
+#: Things that are not blocks stand this far from every place [m].
+CLUTTER_GAP: Final = 0.11
+#: Nothing stands this near to the arm's base [m].
+ARM_FOOT: Final = 0.17
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """One picture's scene.
+
+    Attributes:
+        seed: of what the world draws.
+        layout: where the blocks stand.
+        scene: content of its scene file; None: the plain world.
+    """
+
+    seed: int
+    layout: Stacks
+    scene: Mapping[str, Any] | None = None
+
+
+def plain(blocks: int) -> Callable[[int], Drawn]:
+    """Random states of so many blocks in the plain world."""
+    return lambda number: Drawn(
+        FIRST_SEED + number, random_layout(FIRST_SEED + number, blocks), None
+    )
+
+
+@functools.cache
+def _states_of_six() -> tuple[Stacks, ...]:
+    return tuple(all_layouts([object_name(color, BOX) for color in BASIC_COLORS[:6]]))
+
+
+def state_of_six(number: int) -> Drawn:
+    """All 20,160 states of six blocks, in an order in which any first ones are a fair sample."""
+    states = _states_of_six()
+    order = np.random.default_rng(FIRST_SEED).permutation(len(states))
+    return Drawn(FIRST_SEED + number, states[order[number % len(states)]], None)
+
+
+def turned(degrees: float) -> Callable[[int], Drawn]:
+    """Random states of six blocks, the camera turned about the middle of the row."""
+
+    def draw(number: int) -> Drawn:
+        seed = FIRST_SEED + number
+        camera = camera_of(
+            Viewpoint(), [place[:2] for place in ROW_OF_THREE], 0.36, math.radians(degrees)
+        )
+        return Drawn(seed, random_layout(seed, 6), {"cameras": [camera]})
+
+    return draw
+
+
+def solids(
+    shapes: tuple[str, ...],
+    edges: tuple[float, float],
+    cubes: bool = False,
+    clutter: bool = False,
+    azimuth: float = 0.2618,
+    size: tuple[int, int] = (256, 256),
+) -> Callable[[int], Drawn]:
+    """Blocks of many sizes, turned anyhow, on a row of 2 to 5 places anywhere in reach.
+
+    Args:
+        shapes: of which each block is one.
+        edges: least and greatest edge of a block [m].
+        cubes: whether the three edges of a box are equal.
+        clutter: whether things that are not blocks stand around.
+        azimuth: greatest angle of the camera beside the row's front [rad].
+        size: of the picture [px].
+    """
+
+    def draw(number: int) -> Drawn:
+        seed = FIRST_SEED + number
+        rng = np.random.default_rng([seed, 8])
+        places = draw_row(Row(), rng)
+        colors = [str(color) for color in rng.permutation(BASIC_COLORS)[: rng.integers(3, 7)]]
+        named: dict[str, Any] = {}
+        for color in colors:
+            shape = str(rng.choice(shapes))
+            lengths = [round(float(value), 4) for value in rng.uniform(*edges, 3)]
+            if shape == CYLINDER:
+                lengths[1] = lengths[0]
+            if cubes:
+                lengths = [lengths[0]] * 3
+            named[object_name(color, shape)] = {"size": lengths}
+        layout = random_arrangement(list(named), rng, len(places))
+        highest = sum(item["size"][2] for item in named.values())
+        camera = camera_of(Viewpoint(), places, highest, float(rng.uniform(-azimuth, azimuth)))
+        camera |= {"width": size[0], "height": size[1]}
+        scene: dict[str, Any] = {
+            "places": [list(place) for place in places],
+            "blocks": {"named": named},
+            "cameras": [camera],
+            "yaw_jitter": 0.785,
+        }
+        if clutter:
+            scene["obstacles"] = _clutter(places, camera["position"], rng)
+        return Drawn(seed, layout, scene)
+
+    return draw
+
+
+def _clutter(
+    places: tuple[tuple[float, float], ...], camera: list[float], rng: np.random.Generator
+) -> list[dict[str, Any]]:
+    """Up to three things around the row, none of them between a place and the camera."""
+    found: list[dict[str, Any]] = []
+    middle = np.mean(places, axis=0)
+    toward = np.array(camera[:2]) - middle
+    toward /= np.linalg.norm(toward)
+    for _ in range(40):
+        if len(found) == 3:
+            break
+        at = middle + rng.uniform(-0.3, 0.3, 2)
+        width, height = rng.uniform(0.03, 0.12), rng.uniform(0.02, 0.2)
+        if min(math.dist(at, place) for place in places) < CLUTTER_GAP + 0.7 * width:
+            continue
+        if math.hypot(*at) < ARM_FOOT + 0.71 * width:
+            continue
+        if max(float((at - place) @ toward) for place in places) > -0.05:
+            continue
+        if any(math.dist(at, item["position"]) < 0.18 for item in found):
+            continue
+        found.append(
+            {
+                "name": f"thing {len(found)}",
+                "shape": str(rng.choice([BOX, CYLINDER])),
+                "size": [round(float(value), 4) for value in (width, width, height)],
+                "position": [round(float(value), 4) for value in at],
+                "color": [round(float(value), 3) for value in rng.uniform(0.1, 0.9, 3)],
+            }
+        )
+    return found

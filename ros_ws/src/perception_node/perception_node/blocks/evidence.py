@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a picture says about one block: depths of its pixels, and where its outline is seen."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from perception_node.camera import PinholeCamera
+from perception_node.errors import BadImageError
+from perception_node.segment import Segment, Segments
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+#: Least share of a block's pixels that must have depth, and least number.
+MIN_DEPTH_SHARE: Final = 0.3
+MIN_PIXELS: Final = 12
+#: Of a block at most so many depths are used, spread over all of its pixels.
+MAX_DEPTHS: Final = 200
+#: A neighbour nearer than this much, beyond the noise, is in front of the block [m].
+IN_FRONT: Final = 0.004
+#: A block that is higher than another one by this, and no further beside it than that, may stand on
+#: it: between the medians of what is seen of both [m].
+HIGHER: Final = 0.008
+BESIDE: Final = 0.06
+
+
+#: Noise is measured on pixels this far apart, further than it is shared by neighbours [px].
+NOISE_STEP: Final = 4
+
+
+def depth_noise(depth: NDArray[np.floating]) -> float:
+    """Standard deviation of a picture's depth at 1 m [m]; it grows with the square.
+
+    Across a plane the inverse of depth is a linear function of the pixel, so three pixels in a row
+    on one of the planes that a picture mostly consists of tell the noise of the inverse, which is
+    the same at all distances.
+
+    Args:
+        depth: anything but a positive number means unknown, shape (height, width) [m].
+    """
+    known = (depth > 0.0) & np.isfinite(depth)
+    inverse = np.divide(1.0, depth, out=np.full(depth.shape, np.nan), where=known)
+    rows, step = inverse[::2], NOISE_STEP
+    bends = rows[:, : -2 * step] - 2.0 * rows[:, step:-step] + rows[:, 2 * step :]
+    found = np.abs(bends[np.isfinite(bends)])
+    return 1.4826 / np.sqrt(6.0) * float(np.median(found)) if found.size else 0.0
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What a picture says about one block.
+
+    Attributes:
+        pixels: of the block (column, row), shape (n, 2) [px].
+        depths: measured there, shape (n,) [m].
+        rays: directions of these pixels in world, shape (n, 3).
+        noise: standard deviation of the depths, shape (n,) [m].
+        outline: points where the block ends and nothing is before it, between two pixels, shape
+            (o, 2) [px].
+        shared: how many of them lie on one straight line along rows or columns, and so are off by
+            the same fraction of a pixel, shape (o,).
+        camera: that took the picture.
+    """
+
+    pixels: Array
+    depths: Array
+    rays: Array
+    noise: Array
+    outline: Array
+    shared: Array
+    camera: PinholeCamera
+
+    @cached_property
+    def points(self) -> Array:
+        """The block's surface as measured, shape (n, 3) [m]."""
+        return self.camera.position_world + self.rays * self.depths[:, None]
+
+
+def evidence_of(
+    segment: Segment,
+    segments: Segments,
+    depth: NDArray[np.floating],
+    camera: PinholeCamera,
+    noise: float,
+    covers: Collection[int] = (),
+) -> Evidence:
+    """What a picture says about a block.
+
+    Args:
+        covers: labels of the blocks that may stand on it, see :func:`covering`: where they begin
+            it does not end.
+        depth: anything but a positive number means unknown, shape (height, width) [m].
+        noise: of depth at 1 m; it grows with the square [m].
+
+    Raises:
+        BadImageError: if too little depth is known; the sentence goes on from the block's name.
+    """
+    part = segment.part
+    rows, columns = np.flatnonzero(part.any(1)), np.flatnonzero(part.any(0))
+    if len(rows) == 0:
+        raise BadImageError("it has no pixels")
+    top, left = rows[0], columns[0]
+    # One more pixel on every side; what is beyond the picture is unlike anything.
+    wide = _padded(part, rows, columns, fill=False)
+    labels = _padded(segments.label_image, rows, columns, fill=-1)
+    near = _padded(depth, rows, columns, fill=np.nan).astype(np.float64)
+    near[~(near > 0.0) | np.isinf(near)] = np.nan
+    known = wide & np.isfinite(near)
+    count, all_of_it = np.count_nonzero(known), np.count_nonzero(wide)
+    if count < MIN_DEPTH_SHARE * all_of_it or count < MIN_PIXELS:
+        raise BadImageError(f"only {count / all_of_it:.0%} of its pixels have depth")
+    at = np.flatnonzero(known)
+    at = at[:: -(-len(at) // MAX_DEPTHS)]
+    inner = np.stack([at % wide.shape[1] + left - 1, at // wide.shape[1] + top - 1], axis=-1)
+    depths = near.ravel()[at]
+    ends = _ends(wide, np.isin(labels, [-1, *covers]), near, noise)
+    return Evidence(
+        pixels=inner.astype(np.float64),
+        depths=depths,
+        rays=camera.rays_world(inner),
+        noise=np.maximum(noise * depths**2, 2e-4),
+        outline=np.concatenate([points for points, _ in ends]) + (left - 1, top - 1),
+        shared=np.concatenate([shared for _, shared in ends]),
+        camera=camera,
+    )
+
+
+def _padded(
+    image: NDArray[Any], rows: NDArray[np.intp], columns: NDArray[np.intp], fill: float
+) -> NDArray[Any]:
+    """The part of an image from the first to the last row and column, and one pixel around."""
+    top, bottom, left, right = rows[0] - 1, rows[-1] + 2, columns[0] - 1, columns[-1] + 2
+    height, width = image.shape
+    # Labels have no negative numbers, but what is beyond the picture is like none of them.
+    kind = np.int64 if np.issubdtype(image.dtype, np.integer) else image.dtype
+    out = np.full((bottom - top, right - left), fill, kind)
+    a, b, c, d = max(top, 0), min(bottom, height), max(left, 0), min(right, width)
+    out[a - top : b - top, c - left : d - left] = image[a:b, c:d]
+    return out
+
+
+def covering(
+    segments: Segments, depth: NDArray[np.floating], camera: PinholeCamera
+) -> list[frozenset[int]]:
+    """For each block the labels of those that may stand on it, directly or not."""
+    middles = np.full((len(segments), 3), np.nan)
+    for index, segment in enumerate(segments):
+        rows, columns = np.nonzero(segment.part)
+        found = depth[rows, columns]
+        known = (found > 0.0) & np.isfinite(found)
+        if known.any():
+            rays = camera.rays_world(np.stack([columns[known], rows[known]], axis=-1))
+            points = camera.position_world + rays * found[known, None]
+            middles[index] = np.median(points, axis=0)
+    apart = middles[None] - middles[:, None]
+    with np.errstate(invalid="ignore"):
+        on = (apart[..., 2] > HIGHER) & (np.hypot(apart[..., 0], apart[..., 1]) < BESIDE)
+    labels = [segment.label for segment in segments]
+    return [frozenset(label for label, above in zip(labels, row) if above) for row in on]
+
+
+def _ends(mask: Mask, goes_on: Mask, depth: Array, noise: float) -> list[tuple[Array, Array]]:
+    """Points between a pixel of the block and one that is not, where the block is what ends.
+
+    Args:
+        goes_on: pixels behind which it may go on.
+
+    Returns:
+        For each direction (column, row) in the padded part [px], and how many share a line.
+    """
+    found = []
+    for axis, step in ((0, -1), (0, 1), (1, -1), (1, 1)):
+        mine = (slice(None),) * axis + (slice(1, None) if step < 0 else slice(None, -1),)
+        other = (slice(None),) * axis + (slice(None, -1) if step < 0 else slice(1, None),)
+        border = mask[mine] & ~mask[other] & ~goes_on[other]
+        tolerance = IN_FRONT + 4.0 * noise * np.nan_to_num(depth[mine]) ** 2
+        with np.errstate(invalid="ignore"):
+            hidden = depth[mine] - depth[other] > tolerance
+        rows, columns = np.nonzero(border & ~hidden)
+        point = np.stack([columns, rows], axis=-1).astype(np.float64)
+        # Row or column of the block's own pixel, and half a pixel towards the other one.
+        point[:, 1 - axis] += (1.0 if step < 0 else 0.0) + 0.5 * step
+        _, line, count = np.unique(point[:, 1 - axis], return_inverse=True, return_counts=True)
+        found.append((point, count[line].astype(np.float64)))
+    return found

@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Finds blocks in colour and depth, without a detector: what stands on the table near the places.
+
+Pixels above the table are split where colour, brightness or depth jump, and the pieces put together
+again that can be faces of one block: of one hue, and meeting in an edge that bulges. What is too
+large for a block, or hangs on something that is, is none: the arm, a hand, a wall.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from perception_node.errors import BadImageError
+from perception_node.observation import Observation
+
+from .facets import Facets, Look, alike, find_facets
+from .region import Region, look_at
+from .segments import Segments
+from .unseen import check_all_seen
+from .volume import Volume
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+#: What is lower than this over the table is the table [m].
+MIN_HEIGHT: Final = 0.003
+#: Where the table is measured lower than it should be, blocks end there, but not deeper [m].
+MAX_SUNK: Final = 0.03
+#: A block is nowhere wider and no higher than this [m], and not as small as
+MAX_WIDTH: Final = 0.11
+MAX_HEIGHT: Final = 0.09
+MIN_SIDE: Final = 0.014
+#: Facets of fewer pixels are noise, or the rim of another one.
+MIN_PIXELS: Final = 10
+#: Facets of fewer pixels than this have no normal to rely on.
+SLIVER: Final = 40
+#: Facets of one block have hues nearer than this, see :class:`Look`.
+SAME_HUE: Final = 0.045
+#: Facets that lie in one plane and differ in brightness by more are of two blocks.
+SAME_LIGHT: Final = 0.12
+#: No two faces of one block differ in brightness by more (natural logarithm).
+MAX_CONTRAST: Final = 1.1
+#: Two walls of one block have this part of the lower one's height in common.
+SHARED_HEIGHT: Final = 0.4
+#: The points of a level facet are spread less than this about their height [m].
+LEVEL: Final = 0.0025
+#: Heights that differ by less are the same [m].
+SAME_HEIGHT: Final = 0.006
+#: Normals of upright facets with a greater cosine between them are of one plane.
+ONE_PLANE: Final = 0.92
+#: Ends of a group of pixels, so that a few stray ones count for nothing [%].
+STRAY: Final = (1.0, 99.0)
+#: What hangs higher than this over what it should stand on does not stand [m].
+FLOATS: Final = 0.012
+
+
+def find_in_rgbd(
+    observation: Observation, volume: Volume | None, may_miss: bool = False
+) -> Segments:
+    """The blocks in a volume over the table.
+
+    Args:
+        may_miss: whether what has no depth may be left out.
+
+    Raises:
+        BadImageError: if the observation has no depth or no camera, or the volume is not known, or
+            something may be a block but has no depth.
+    """
+    if observation.depth is None or observation.camera is None:
+        raise BadImageError(
+            "masks cannot be found without depth and camera; publish both, or set mask_source to "
+            "segmentation_topic"
+        )
+    if volume is None:
+        raise BadImageError(
+            "masks cannot be found where the places are unknown; set stack_positions, or "
+            "mask_source to segmentation_topic"
+        )
+    labels = np.zeros(observation.rgb.shape[:2], np.uint16)
+    region = look_at(observation.rgb, observation.depth, observation.camera, volume)
+    if region is not None:
+        look = Look.of(region.rgb)
+        if not may_miss:
+            check_all_seen(region, look, labels.size)
+        labels[region.box] = _labels(region, look, volume)
+    return Segments.from_labels(labels, source="camera/depth/image_raw")
+
+
+@dataclass(frozen=True)
+class _Table:
+    """What is known of F facets, in the order of their numbers, from 1; row 0 is of no facet.
+
+    Attributes:
+        pixels: how many.
+        chroma, light: means, shapes (F, 3), (F,).
+        centre, low, high: mean and about the ends of the points, shape (F, 3) [m].
+        normal: of the plane through them, shape (F, 3).
+        level: whether it is a horizontal face.
+    """
+
+    pixels: NDArray[np.intp]
+    chroma: Array
+    light: Array
+    centre: Array
+    low: Array
+    high: Array
+    normal: Array
+    level: Mask
+
+
+def _labels(region: Region, look: Look, volume: Volume) -> NDArray[np.uint16]:
+    """Labels of the blocks, 0 for all else, shape (h, w) of the region."""
+    table_height = volume.floor
+    with np.errstate(invalid="ignore"):
+        candidates = region.inside & (region.points[..., 2] > table_height + MIN_HEIGHT)
+    if not candidates.any():
+        return np.zeros(candidates.shape, np.uint16)
+    facets = find_facets(candidates, look, region.filled)
+    table = _measure(facets, look, region)
+    groups = _group(facets, table)
+    block = _which_are_blocks(facets, table, groups, region.points, volume)
+    numbers = np.zeros(len(block), np.uint16)
+    numbers[block] = np.arange(1, np.count_nonzero(block) + 1)
+    labels = numbers[groups][facets.ids]
+    with np.errstate(invalid="ignore"):
+        foot = region.inside & (region.points[..., 2] <= table_height + MIN_HEIGHT)
+        foot &= region.points[..., 2] > table_height - MAX_SUNK
+    _grow_down(labels, foot, look)
+    return labels
+
+
+def _grow_down(labels: NDArray[np.uint16], foot: Mask, look: Look) -> None:
+    """Gives the pixels at a block's foot, too low to tell from the table by depth, its label."""
+    low, high = np.s_[:-1], np.s_[1:]
+    for _ in range(labels.shape[0]):
+        grows = (labels[low] > 0) & (labels[high] == 0) & foot[high]
+        grows[grows] = alike(look, np.nonzero(grows), (1, 0))
+        if not grows.any():
+            return
+        labels[high][grows] = labels[low][grows]
+
+
+def _measure(facets: Facets, look: Look, region: Region) -> _Table:
+    used = facets.ids > 0
+    ids, count = facets.ids[used], facets.count + 1
+    pixels = np.bincount(ids, minlength=count)
+    many = np.maximum(pixels, 1)
+
+    def mean(values: NDArray[np.floating]) -> Array:
+        flat = values[used].reshape(len(ids), -1)
+        sums = [np.bincount(ids, column, minlength=count) for column in flat.T]
+        return np.stack(sums, axis=-1) / many[:, None]
+
+    points = region.points.astype(np.float64)
+    centre = mean(points)
+    centred = points[used] - centre[ids]
+    products = centred[:, [0, 0, 0, 1, 1, 2]] * centred[:, [0, 1, 2, 1, 2, 2]]
+    second = np.stack([np.bincount(ids, column, minlength=count) for column in products.T], -1)
+    spread = second[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3) / many[:, None, None]
+    normal = np.linalg.eigh(spread)[1][:, :, 0]
+    # Of points that fill a face evenly these are its ends; a stray one does not move them far.
+    reach = np.sqrt(3.0 * np.einsum("fii->fi", spread))
+    level = (np.sqrt(spread[:, 2, 2]) < LEVEL) & (np.abs(normal[:, 2]) > 0.6)
+    wide = np.sqrt(spread[:, 0, 0] + spread[:, 1, 1]) > LEVEL
+    return _Table(
+        pixels,
+        mean(look.chroma),
+        mean(look.light)[:, 0],
+        centre,
+        centre - reach,
+        centre + reach,
+        normal,
+        level & wide,
+    )
+
+
+def _group(facets: Facets, table: _Table) -> NDArray[np.intp]:
+    """The number of the group of each facet, from 1; facet 0 has group 0."""
+    first, second, length = facets.borders.T
+    large = table.pixels >= MIN_PIXELS
+    same = large[first] & large[second] & (length >= 2) & _can_be_one_block(table, first, second)
+    groups = _joined(facets.count, first[same], second[same])
+    # Small ones belong to the large neighbour that they look like most.
+    difference = np.linalg.norm(table.chroma[first] - table.chroma[second], axis=1)
+    for border in np.argsort(difference):
+        a, b = first[border], second[border]
+        if large[a] == large[b] or difference[border] >= SAME_HUE:
+            continue
+        small, neighbour = (b, a) if large[a] else (a, b)
+        groups[small] = groups[neighbour]
+        large[small] = True
+    return groups
+
+
+def _joined(count: int, first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.intp]:
+    links = coo_array((np.ones(len(first)), (first, second)), shape=(count + 1, count + 1))
+    return np.asarray(connected_components(links, directed=False)[1], dtype=np.intp)
+
+
+def _can_be_one_block(table: _Table, a: NDArray[np.int64], b: NDArray[np.int64]) -> Mask:
+    """Whether two facets that touch can be faces of one block, for each of n pairs."""
+    same_hue = np.linalg.norm(table.chroma[a] - table.chroma[b], axis=1) < SAME_HUE
+    same_light = np.abs(table.light[a] - table.light[b]) < SAME_LIGHT
+    level_a, level_b = table.level[a], table.level[b]
+    same_height = np.abs(table.centre[a, 2] - table.centre[b, 2]) < SAME_HEIGHT
+    both_level = level_a & level_b & same_height & same_light
+    # The lid of the upright one, not the ledge that it stands on.
+    lid, wall = np.where(level_a, a, b), np.where(level_a, b, a)
+    on_top = (level_a ^ level_b) & (table.centre[lid, 2] > table.high[wall, 2] - SAME_HEIGHT)
+    upright = ~level_a & ~level_b
+    # Two walls of one block meet along an upright edge, or lie in one plane.
+    shared = np.minimum(table.high[a, 2], table.high[b, 2]) - np.maximum(
+        table.low[a, 2], table.low[b, 2]
+    )
+    lower = np.minimum(table.high[a, 2] - table.low[a, 2], table.high[b, 2] - table.low[b, 2])
+    beside = shared > SHARED_HEIGHT * lower
+    # A sliver at an edge, where depth is often lost, has no plane that can be told.
+    sliver = beside & (np.minimum(table.pixels[a], table.pixels[b]) < SLIVER)
+    flat = np.abs(np.einsum("ni,ni->n", table.normal[a], table.normal[b])) > ONE_PLANE
+    lit = np.abs(table.light[a] - table.light[b]) < MAX_CONTRAST
+    return (
+        same_hue
+        & lit
+        & (both_level | on_top | (upright & (np.where(flat, same_light, beside) | sliver)))
+    )
+
+
+def _which_are_blocks(
+    facets: Facets,
+    table: _Table,
+    groups: NDArray[np.intp],
+    points: NDArray[np.floating],
+    volume: Volume,
+) -> Mask:
+    """Whether each group is a block, shape (groups,)."""
+    count = int(groups.max()) + 1
+    pixels = np.bincount(groups[1:], table.pixels[1:], minlength=count)
+    some = pixels >= MIN_PIXELS
+    low, high = np.zeros((count, 3)), np.zeros((count, 3))
+    group_of = groups[facets.ids]
+    for group in np.flatnonzero(some):
+        low[group], high[group] = np.percentile(points[group_of == group], STRAY, axis=0)
+    extent = high - low
+    across = np.maximum(extent[:, 0], extent[:, 1])
+    fits = some & (across < MAX_WIDTH) & (extent[:, 2] < MAX_HEIGHT)
+    fits &= (across > MIN_SIDE) & (extent[:, 2] > MIN_SIDE)
+    stands = fits & (low[:, 2] < volume.floor + FLOATS)
+    for _ in range(count):
+        under = np.flatnonzero(stands)
+        for group in np.flatnonzero(fits & ~stands):
+            gap = np.abs(low[group, 2] - high[under, 2]) < FLOATS
+            over = ((low[group, :2] < high[under, :2]) & (high[group, :2] > low[under, :2])).all(1)
+            stands[group] = bool((gap & over).any())
+        if np.count_nonzero(stands) == len(under):
+            break
+    first, second = groups[facets.borders[:, 0]], groups[facets.borders[:, 1]]
+    other = some & ~fits
+    held = np.zeros(count, bool)
+    np.logical_or.at(held, first, other[second])
+    np.logical_or.at(held, second, other[first])
+    blocks = (stands | (fits & ~held)) & volume.is_near(0.5 * (low + high)[:, :2])
+    blocks[0] = False
+    return blocks

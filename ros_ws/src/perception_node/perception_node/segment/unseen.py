@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Things that colour shows and depth does not: too dark, shiny or transparent for the sensor."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from perception_node.errors import BadImageError
+
+from .facets import Look, Mask, find_facets
+from .region import Region
+
+#: Of a thing that depth shows at least this part of the pixels has a depth.
+MIN_DEPTH_SHARE: Final = 0.4
+#: It is large enough to be a face of a block from this part of the picture's pixels on,
+MIN_AREA: Final = 1.2e-3
+#: and none if it fills more than this part of the part that shows the volume.
+MAX_PART: Final = 0.1
+#: What is behind everything looks the same everywhere: hues and brightness (natural logarithm) of
+#: its parts differ by less than this.
+SAME_HUE: Final = 0.03
+SAME_LIGHT: Final = 0.16
+
+
+def check_all_seen(region: Region, look: Look, picture_area: int) -> None:
+    """Raises BadImageError if something that may be a block has no depth.
+
+    Args:
+        picture_area: of the picture that the region is a part of [px].
+    """
+    rows, columns = np.nonzero(unseen(region, look, picture_area))
+    if len(rows):
+        row = int(np.median(rows)) + region.box[0].start
+        column = int(np.median(columns)) + region.box[1].start
+        raise BadImageError(
+            f"what is at pixel ({column}, {row}) has no depth, so it is not known whether it is a "
+            "block; check the depth camera, or take away what it cannot see"
+        )
+
+
+def unseen(region: Region, look: Look, picture_area: int) -> Mask:
+    """Pixels of things without depth that can be blocks, shape (h, w) of the region.
+
+    What is so far behind the table that it has no depth is not among them: it reaches the region's
+    edge or fills a great part of it, or looks like what does.
+
+    Args:
+        picture_area: of the picture that the region is a part of [px].
+    """
+    everything = np.ones(region.depth.shape, bool)
+    facets = find_facets(everything, look, region.filled)
+    pixels = np.bincount(facets.ids.ravel(), minlength=facets.count + 1)
+    known = np.bincount(facets.ids[np.isfinite(region.filled)], minlength=facets.count + 1)
+    bare = (pixels >= MIN_AREA * picture_area) & (known < MIN_DEPTH_SHARE * pixels)
+    behind = bare & (pixels > MAX_PART * everything.size)
+    for edge in (facets.ids[0], facets.ids[:, 0], facets.ids[:, -1]):
+        behind[edge] |= bare[edge]
+    for facet in np.flatnonzero(bare & ~behind):
+        mine = facets.ids == facet
+        for other in np.flatnonzero(behind):
+            theirs = facets.ids == other
+            hue = look.chroma[mine].mean(axis=0) - look.chroma[theirs].mean(axis=0)
+            light = look.light[mine].mean() - look.light[theirs].mean()
+            if np.linalg.norm(hue) < SAME_HUE and abs(light) < SAME_LIGHT:
+                bare[facet] = False
+    return np.asarray((bare & ~behind)[facets.ids])

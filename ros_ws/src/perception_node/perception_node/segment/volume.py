@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The volume over the table in which blocks are looked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+#: Blocks are looked for as far as this beside the outer places [m].
+MARGIN: Final = 0.12
+#: What stands further than this beside the row of places is none of its blocks [m].
+NEAR: Final = 0.095
+
+
+@dataclass(frozen=True)
+class Volume:
+    """An upright box in world, its floor on the table, and the row of places in it.
+
+    Attributes:
+        low, high: opposite corners, shape (3,) [m].
+        feet: the places, in order, shape (m, 2) [m].
+    """
+
+    low: Array
+    high: Array
+    feet: Array
+
+    @classmethod
+    def over(cls, feet: Array, height: float) -> Volume:
+        """What is around and over places.
+
+        Args:
+            feet: of the places, at least one, shape (m, 3) [m].
+            height: of the highest tower [m].
+        """
+        low = np.append(feet[:, :2].min(axis=0) - MARGIN, np.median(feet[:, 2]))
+        high = np.append(feet[:, :2].max(axis=0) + MARGIN, feet[:, 2].max() + height)
+        return cls(low, high, feet[:, :2].astype(np.float64))
+
+    @property
+    def floor(self) -> float:
+        """Height of the table [m]."""
+        return float(self.low[2])
+
+    def is_near(self, points: Array) -> NDArray[np.bool_]:
+        """Whether points are near enough to the row to be of it, (n, 2) [m] -> (n,).
+
+        Near the places, and near the lines from each one to the next.
+        """
+        begin, end = self.feet, np.concatenate([self.feet[1:], self.feet[-1:]])
+        along = end - begin
+        squares = np.maximum((along**2).sum(axis=1), 1e-12)
+        share = ((points[:, None] - begin) * along).sum(axis=-1) / squares
+        nearest = begin + np.clip(share, 0.0, 1.0)[..., None] * along
+        distances = np.linalg.norm(points[:, None] - nearest, axis=-1)
+        return np.asarray(distances.min(axis=1) < NEAR)
+
+    def corners(self) -> Array:
+        """All eight, shape (8, 3) [m]."""
+        unit = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+        return self.low + unit * (self.high - self.low)

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The sets of pictures that perception is measured on are what they say, and counted rightly."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import yaml
+from perception.scenes import CLUTTER_GAP
+from perception.score import Answer, refusals, rows_of
+from perception.sets import SETS, PictureSet, UnknownSetError, sets_named
+
+from sim_node import parse_scene
+
+
+@pytest.mark.parametrize("item", SETS, ids=lambda item: item.name)
+def test_the_same_number_is_the_same_picture_and_others_are_others(item: PictureSet) -> None:
+    assert item.draw(3) == item.draw(3)
+    drawn = [item.draw(number) for number in range(8)]
+    assert len({str(entry.layout) for entry in drawn}) > 1
+    assert all(entry.seed >= 1000 for entry in drawn)
+
+
+@pytest.mark.parametrize("item", SETS, ids=lambda item: item.name)
+def test_every_scene_is_a_scene(item: PictureSet) -> None:
+    for number in range(3):
+        drawn = item.draw(number)
+        if drawn.scene is not None:
+            scene = parse_scene(yaml.safe_dump(dict(drawn.scene)))
+            assert len(scene.stack_positions) == len(drawn.layout)
+
+
+def test_all_states_of_six_blocks_are_drawn_once() -> None:
+    (six,) = sets_named("six")
+    assert six.count == math.factorial(6) * math.comb(8, 2)
+    assert len({six.draw(number).layout for number in range(six.count)}) == six.count
+
+
+def test_clutter_stands_clear_of_the_places() -> None:
+    (hard,) = sets_named("hard")
+    for number in range(20):
+        scene = hard.draw(number).scene
+        assert scene is not None
+        for thing in scene["obstacles"]:
+            nearest = min(math.dist(thing["position"], place) for place in scene["places"])
+            assert nearest > CLUTTER_GAP
+
+
+def test_an_unknown_set_is_answered_with_those_that_there_are() -> None:
+    with pytest.raises(UnknownSetError, match="there are six, seven"):
+        sets_named("six,eight")
+    assert sets_named("") == SETS
+
+
+def answer(right: bool, confident: bool, message: str = "") -> Answer:
+    status = "CONFIDENT" if confident else "LOW_CONFIDENCE"
+    errors = ((1.0, 2.0, 3.0),) if confident else ()
+    return Answer(0, right, confident, status, message, (0.9,), 0.02, errors)
+
+
+def test_graphs_are_counted_by_right_and_accepted() -> None:
+    (item,) = sets_named("six")
+    answers = [answer(True, True)] * 6 + [answer(True, False)] * 3 + [answer(False, True)]
+    values = {row.metric: row.value for row in rows_of(item, answers)}
+    assert values["graph right"] == pytest.approx(0.9)
+    assert values["accepted and right"] == pytest.approx(0.6)
+    assert values["accepted and wrong"] == pytest.approx(0.1)
+    assert values["picture to graph, median"] == pytest.approx(20.0)
+    assert values["error of sizes, 99th percentile"] == pytest.approx(2.0)
+    assert not any(np.isnan(value) for value in values.values())
+
+
+def test_refusals_are_counted_without_names_and_numbers() -> None:
+    answers = [
+        answer(True, False, "red_box is 3 mm high"),
+        answer(True, False, "blue_cylinder_2 is 14 mm high"),
+        answer(True, True),
+    ]
+    assert refusals(answers) == {"LOW_CONFIDENCE: BLOCK is N mm high": 2}

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Labels of a detector that errs are corrected or refused, never believed and wrong."""
+
+import numpy as np
+import pytest
+from seen_worlds import LABELLED, TOWERS, observe, perceive
+
+from perception_node.segment import Volume, given_labels
+from scene_graph import ROW_OF_THREE, GraphStatus, up_relations
+from sim_node.layouts import random_layout
+from sim_node.sensor import SegmentationConfig, SensorConfig, sense
+from sim_node.sensor.segmentation import ERRORS
+from sim_node.world import World
+
+VOLUME = Volume.over(np.array(ROW_OF_THREE), 0.36)
+#: Errors of where masks end, and of which pixels belong together: what was found tells better.
+CORRECTED = [kind for kind in ERRORS if kind not in ("missing", "phantom")]
+
+
+def erring(kind: str, strength: int = 1) -> SensorConfig:
+    return SensorConfig(segmentation=SegmentationConfig(kind, strength))
+
+
+@pytest.mark.parametrize("kind", ERRORS)
+@pytest.mark.parametrize("seed", range(720, 725))
+def test_a_graph_of_labels_that_err_is_right_or_refused(world: World, kind: str, seed: int) -> None:
+    layout = random_layout(seed, 3 + seed % 5)
+    world.reset(layout, seed)
+    perceived = perceive(world, sense(world.render(), erring(kind), (seed, 0, 0)), LABELLED)
+    if perceived.status is GraphStatus.CONFIDENT:
+        assert perceived.graph.relations == up_relations(layout)
+    else:
+        assert perceived.message
+    assert (perceived.status is GraphStatus.CONFIDENT) == (kind in CORRECTED)
+
+
+@pytest.mark.parametrize("kind", ["eroded", "dilated", "shifted", "boundary", "merged", "split"])
+def test_masks_that_err_become_those_of_the_blocks(world: World, kind: str) -> None:
+    world.reset(TOWERS)
+    frame = world.render()
+    segments = given_labels(observe(world, sense(frame, erring(kind))), VOLUME)
+    assert len(segments) == 5
+    for segment in segments:
+        label = np.bincount(frame.labels[segment.mask]).argmax()
+        true = frame.labels == label
+        assert label > 0 and np.mean(true[segment.mask]) > 0.95
+        assert np.count_nonzero(true & segment.mask) > 0.95 * np.count_nonzero(true)
+
+
+def test_labels_without_depth_are_taken_as_they_are(world: World) -> None:
+    world.reset(TOWERS)
+    observation = observe(world, sense(world.render(), erring("eroded", 2)))
+    assert observation.labels is not None
+    segments = given_labels(observation)
+    assert np.array_equal(segments.label_image, observation.labels)
