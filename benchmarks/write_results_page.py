@@ -127,6 +127,8 @@ def section(result: Mapping[str, Any], plots: Sequence[str]) -> list[str]:
     details = result.get("details", {})
     if failures := details.get("failure_table"):
         lines += ["", *failure_table(failures)]
+    if refused := details.get("refused"):
+        lines += ["", *refusal_table(refused)]
     if numbered := details.get("numbered"):
         lines += ["", *numbered_table(numbered)]
     if entries := details.get("dictionary"):
@@ -154,6 +156,21 @@ def failure_table(failures: Mapping[str, Any]) -> list[str]:
         reason = f"**{row['module']}**: {row['sentence']}"
         lines.append(_counts_line(reason, row["n"], row["counts"], f"`{row['again']}`"))
     return lines
+
+
+def refusal_table(refused: Mapping[str, Mapping[str, int]]) -> list[str]:
+    """Set × sentence: why graphs were refused, with N for a number and BLOCK for a name."""
+    lines = [
+        "<details><summary>What was said of graphs that were refused</summary>",
+        "",
+        "| set | n | status and sentence |",
+        "|---|---:|---|",
+    ]
+    for name, sentences in refused.items():
+        for sentence, count in sentences.items():
+            cells = (name, str(count), _shortened(sentence))
+            lines.append("| " + " | ".join(_cell(cell) for cell in cells) + " |")
+    return [*lines, "", "</details>"]
 
 
 def numbered_table(numbered: Sequence[Mapping[str, Any]]) -> list[str]:

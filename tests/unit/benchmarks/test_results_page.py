@@ -54,6 +54,14 @@ def test_row_stands_in_the_table_with_bound_and_verdict(results: Path, page: Pat
     assert "1 of 1 required bounds hold." in text
 
 
+def test_why_graphs_were_refused_stands_under_their_table(results: Path, page: Path) -> None:
+    refused = {"6 objects": {"OCCLUDED: something hides N%": 3}, "7 objects": {}}
+    row = Row("6 objects", "graph right", 1.0, "", 9)
+    write_result_file(results, "perception", row, details={"refused": refused})
+    write_page(results, page)
+    assert "| 6 objects | 3 | OCCLUDED: something hides N% |" in page.read_text()
+
+
 def test_section_says_how_to_measure_again_and_where_it_was_measured(
     results: Path, page: Path
 ) -> None:
