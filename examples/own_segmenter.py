@@ -19,9 +19,9 @@ from perception_node import (
     Perception,
     PinholeCamera,
     Segments,
+    Volume,
     load_weights,
 )
-from perception_node.segment import Volume
 from sim_node import World, random_layout, true_scene_graph
 
 

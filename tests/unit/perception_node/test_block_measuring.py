@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from perception_scenes import Solid, cast, looking_camera, piled, tower
 
-from perception_node.blocks.evidence import depth_noise
 from perception_node.blocks.measure import measure_blocks
 from perception_node.blocks.pose import MeasuredBlock, pose_blocks
 from perception_node.errors import BadImageError
+from perception_node.noise import depth_noise
 from perception_node.segment import Segments
 from scene_graph import BOX, CYLINDER, SPHERE
 

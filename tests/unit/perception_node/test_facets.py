@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from perception_node.segment.facets import Facets, Look, color_noise, find_facets
+from perception_node.noise import color_noise
+from perception_node.segment.facets import Facets, Look, find_facets
 from perception_node.segment.region import fill
 
 RED, BLUE = (180, 30, 30), (30, 50, 170)

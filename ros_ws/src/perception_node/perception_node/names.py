@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -146,8 +147,7 @@ def explain_colors(colors: Array) -> ColorFit:
 
 def _explain(colors: Array, gains: Array) -> ColorFit:
     """The same for lights of certain colours only, shape (lights, 3)."""
-    palette = np.array([COLORS[name] for name in _NAMES])
-    shaded = _lab(np.clip(palette[None] * _SHADES[:, None, None], 0.0, 1.0)).reshape(-1, 3)
+    shaded = _shaded_names()
     seen = _lab(np.clip(colors[None] / gains[:, None], 0.0, 1.0))  # (lights, N, 3)
     # |a - b|² by a product: (lights, N, shades of the block, names)
     distance = (seen**2).sum(-1)[..., None] + (shaded**2).sum(-1) - 2.0 * seen @ shaded.T
@@ -155,8 +155,8 @@ def _explain(colors: Array, gains: Array) -> ColorFit:
     ratio = np.log(_SHADES[:, None] / _SHADES[None]) ** 2  # (shades of the block, of the scene)
     unusual = _SCENE_SHADE_COST * np.log(_SHADES / _USUAL_SHADE) ** 2
     tint = _GAIN_COST * (np.log(gains) ** 2).sum(axis=1)
-    best, least = np.zeros((len(colors), len(_NAMES))), np.inf
-    half = best
+    best = half = np.zeros((len(colors), len(_NAMES)))
+    least = np.inf
     for scene in range(len(_SHADES)):
         # The block's own shade chosen freely: (lights, N, names)
         cost = (distance + _OWN_SHADE_COST * ratio[:, scene, None]).min(axis=2)
@@ -175,6 +175,13 @@ def _explain(colors: Array, gains: Array) -> ColorFit:
         np.sqrt(np.maximum(apart, 0.0)),
         next_one - near,
     )
+
+
+@functools.cache
+def _shaded_names() -> Array:
+    """CIE Lab of every colour in every shade, names fastest, shape (shades · names, 3)."""
+    palette = np.array([COLORS[name] for name in _NAMES])
+    return _lab(np.clip(palette[None] * _SHADES[:, None, None], 0.0, 1.0)).reshape(-1, 3)
 
 
 def _lab(rgb: Array) -> Array:

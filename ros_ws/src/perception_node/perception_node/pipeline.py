@@ -71,6 +71,8 @@ class Perception:
         self.segmenter = segmenter
         self.make_places = places
         self.places = places(self.config.stack_positions)
+        feet = np.array([place.position_world for place in self.places.places])
+        self._volume = Volume.over(feet, self.config.column_height) if len(feet) else None
 
     def configured(self, config: PerceptionConfig) -> Perception:
         """The same parts with another configuration."""
@@ -122,9 +124,7 @@ class Perception:
         segmenter = self.segmenter or SEGMENTERS[self.config.mask_source]
         if observation.depth is None and self.segmenter is None:
             segmenter = given_labels  # a goal image, drawn by hand
-        feet = np.array([place.position_world for place in self.places.places])
-        volume = Volume.over(feet, self.config.column_height) if len(feet) else None
-        segments = segmenter(observation, volume)
+        segments = segmenter(observation, self._volume)
         if segments.label_image.shape != observation.rgb.shape[:2]:
             raise BadImageError(
                 f"the segmenter's labels have the shape {segments.label_image.shape}, "

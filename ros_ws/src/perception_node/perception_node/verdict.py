@@ -17,9 +17,9 @@ from scene_graph import GraphStatus, SceneGraph, base_name
 from .blocks import Blocks, MeasuredBlock
 from .config import PerceptionConfig, StabilityLimits
 from .names import Names
+from .noise import color_noise
 from .places import Standing
 from .places.occlusion import Occlusion
-from .segment.facets import color_noise
 
 #: Noise of colours from which on it may be why a graph is refused [0..255].
 GRAIN: Final = 8.0

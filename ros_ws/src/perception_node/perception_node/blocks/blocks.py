@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from perception_node.noise import depth_noise
 from perception_node.observation import Observation
 from perception_node.places import Standing
 from perception_node.segment import Segments
 from scene_graph import BlockPose
 
-from .evidence import depth_noise
 from .measure import BlockSurface, measure_blocks
 from .outline import shape_from_outline
 from .pose import MeasuredBlock, pose_blocks

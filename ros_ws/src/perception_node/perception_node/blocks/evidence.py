@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -31,37 +30,14 @@ HIGHER: Final = 0.008
 BESIDE: Final = 0.06
 
 
-#: Noise is measured on pixels this far apart, further than it is shared by neighbours [px].
-NOISE_STEP: Final = 4
-
-
-def depth_noise(depth: NDArray[np.floating]) -> float:
-    """Standard deviation of a picture's depth at 1 m [m]; it grows with the square.
-
-    Across a plane the inverse of depth is a linear function of the pixel, so three pixels in a row
-    on one of the planes that a picture mostly consists of tell the noise of the inverse, which is
-    the same at all distances.
-
-    Args:
-        depth: anything but a positive number means unknown, shape (height, width) [m].
-    """
-    known = (depth > 0.0) & np.isfinite(depth)
-    inverse = np.divide(1.0, depth, out=np.full(depth.shape, np.nan), where=known)
-    rows, step = inverse[::2], NOISE_STEP
-    bends = rows[:, : -2 * step] - 2.0 * rows[:, step:-step] + rows[:, 2 * step :]
-    found = np.abs(bends[np.isfinite(bends)])
-    return 1.4826 / np.sqrt(6.0) * float(np.median(found)) if found.size else 0.0
-
-
 @dataclass(frozen=True)
 class Evidence:
     """What a picture says about one block.
 
     Attributes:
-        pixels: of the block (column, row), shape (n, 2) [px].
-        depths: measured there, shape (n,) [m].
-        rays: directions of these pixels in world, shape (n, 3).
-        noise: standard deviation of the depths, shape (n,) [m].
+        points: of its surface as measured, shape (n, 3) [m].
+        rays: directions of their pixels in world, shape (n, 3).
+        noise: standard deviation of their depths, shape (n,) [m].
         outline: points where the block ends and nothing is before it, between two pixels, shape
             (o, 2) [px].
         shared: how many of them lie on one straight line along rows or columns, and so are off by
@@ -69,18 +45,12 @@ class Evidence:
         camera: that took the picture.
     """
 
-    pixels: Array
-    depths: Array
+    points: Array
     rays: Array
     noise: Array
     outline: Array
     shared: Array
     camera: PinholeCamera
-
-    @cached_property
-    def points(self) -> Array:
-        """The block's surface as measured, shape (n, 3) [m]."""
-        return self.camera.position_world + self.rays * self.depths[:, None]
 
 
 def evidence_of(
@@ -121,10 +91,10 @@ def evidence_of(
     inner = np.stack([at % wide.shape[1] + left - 1, at // wide.shape[1] + top - 1], axis=-1)
     depths = near.ravel()[at]
     ends = _ends(wide, np.isin(labels, [-1, *covers]), near, noise)
+    rays = camera.rays_world(inner)
     return Evidence(
-        pixels=inner.astype(np.float64),
-        depths=depths,
-        rays=camera.rays_world(inner),
+        points=camera.position_world + rays * depths[:, None],
+        rays=rays,
         noise=np.maximum(noise * depths**2, 2e-4),
         outline=np.concatenate([points for points, _ in ends]) + (left - 1, top - 1),
         shared=np.concatenate([shared for _, shared in ends]),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the blocks of a picture one by one: which model of a block explains it best."""
+"""Measures each block of a picture by itself: which model explains it best, and how well."""
 
 from __future__ import annotations
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Everything that is assumed of places in a row, seen from the front (5.2.1, A.2.2, A.2.4).
 
-Stacks stand side by side in the image, in the order of their places: so they can be counted on the
-outline of the masks, grouped by horizontal coordinate alone, and assigned to places in order.
+Where blocks were measured, those that stand on one spot of the table are a stack, on the nearest
+place. Of a picture alone: stacks stand side by side in it, in the order of their places, so they
+can be counted on the outline of the masks, grouped by horizontal coordinate, and assigned in order.
 """
 
 from __future__ import annotations
@@ -30,8 +31,6 @@ from .standing import Points, Standing
 NOISE_WIDTH: Final = 0.016
 #: A count must hold on this part of the image's rows, in a row or not.
 NOISE_ROWS: Final = 0.016
-
-
 #: Blocks whose axes are nearer than this, seen from above, are of one stack, unless places are [m].
 JOINED: Final = 0.04
 

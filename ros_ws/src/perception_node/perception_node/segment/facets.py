@@ -10,6 +10,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from perception_node.noise import color_noise
+
 Array = NDArray[np.float32]
 Mask = NDArray[np.bool_]
 Ids = NDArray[np.int32]
@@ -56,19 +58,6 @@ class Look:
         values += np.float32(max(DARK * brightest, DARK_NOISE * noise, 1.0))
         total = values.sum(axis=-1)
         return cls(values / total[..., None], np.log(total))
-
-
-def color_noise(rgb: NDArray[np.uint8]) -> float:
-    """Standard deviation of a picture's channels about what they should be [0..255].
-
-    Faces of blocks and the table have colours that change steadily: what bends is noise.
-
-    Args:
-        rgb: shape (h, w, 3).
-    """
-    rows = rgb[::2].astype(np.int16)
-    bends = np.abs(rows[:, :-2] - 2 * rows[:, 1:-1] + rows[:, 2:])
-    return 1.4826 / np.sqrt(6.0) * float(np.median(bends)) if bends.size else 0.0
 
 
 @dataclass(frozen=True)
@@ -127,14 +116,8 @@ def _sides(axis: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
 
 def _between(axis: int) -> tuple[slice, slice]:
     """Where the lattice holds the links along an axis."""
-    return (
-        (slice(1, None, 2), slice(None, None, 2))
-        if axis == 0
-        else (
-            slice(None, None, 2),
-            slice(1, None, 2),
-        )
-    )
+    odd, even = slice(1, None, 2), slice(None, None, 2)
+    return (odd, even) if axis == 0 else (even, odd)
 
 
 def _linked(look: Look, depth: Array, low: tuple[slice, ...], high: tuple[slice, ...]) -> Mask:
