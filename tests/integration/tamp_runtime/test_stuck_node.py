@@ -11,7 +11,7 @@ from ros2_run import PROCESS_TIMEOUT, Spawn
 from tamp_runtime.node_process import EXIT_STUCK
 
 STUCK = """
-import sys, time
+import ctypes, sys, time
 from rclpy.node import Node
 from tamp_runtime.node_process import run_node
 
@@ -22,6 +22,9 @@ class Stuck(Node):
 
     def stay(self):
         time.sleep(1000.0)
+
+    def hold(self):
+        ctypes.PyDLL(None).sleep(1000)  # with the interpreter's lock
 
     def work(self):
         print("here", flush=True)
@@ -34,15 +37,21 @@ sys.exit(run_node(Stuck))
 """
 
 
-@pytest.mark.parametrize("callback, destructor", [("self.stay()", "pass"), ("pass", "self.stay()")])
+@pytest.mark.parametrize(
+    "callback, destructor, code, words",
+    [
+        ("self.stay()", "pass", EXIT_STUCK, ("not stopped after 5 s", "in stay")),
+        ("pass", "self.stay()", EXIT_STUCK, ("not stopped after 5 s", "in stay")),
+        ("pass", "self.hold()", 1, ("in hold",)),
+    ],
+)
 def test_a_stuck_node_is_ended_and_shows_where_it_hangs(
-    spawn: Spawn, callback: str, destructor: str
+    spawn: Spawn, callback: str, destructor: str, code: int, words: tuple[str, ...]
 ) -> None:
     process = spawn(sys.executable, "-c", STUCK.format(callback=callback, destructor=destructor))
     assert process.stdout is not None
     assert process.stdout.readline() == "here\n"
     process.send_signal(signal.SIGINT)
     _, stderr = process.communicate(timeout=PROCESS_TIMEOUT)
-    assert process.returncode == EXIT_STUCK
-    assert "not stopped after 5 s" in stderr
-    assert "in stay" in stderr
+    assert process.returncode == code
+    assert all(word in stderr for word in words)

@@ -6,9 +6,10 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import threading
 
 import pytest
-from tamp_runtime.domain import NoFreeDomainError, release_domain, reserve_domain
+from tamp_runtime.domain import NoFreeDomainError, leave_in_turn, release_domain, reserve_domain
 
 # None that a graph, or a suite that runs at the same time, could want.
 FIRST = 1000 + 10 * os.getpid()
@@ -48,3 +49,30 @@ def test_a_domain_is_free_again_when_its_process_was_killed() -> None:
     holder.communicate(timeout=60.0)
     assert reserve_domain(ids) == ids[0]
     release_domain(ids[0])
+
+
+def test_processes_leave_a_domain_one_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(FIRST + 9))
+    order: list[str] = []
+
+    def leave() -> None:
+        with leave_in_turn(60.0):
+            order.append("second")
+
+    other = threading.Thread(target=leave)
+    with leave_in_turn(60.0):
+        other.start()
+        other.join(0.1)
+        order.append("first")
+    other.join(60.0)
+    assert order == ["first", "second"]
+
+
+def test_who_hangs_while_it_leaves_does_not_keep_the_others(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(FIRST + 9))
+    with leave_in_turn(60.0), leave_in_turn(0.05), leave_in_turn(0.05):
+        pass
+    with leave_in_turn(0.0):
+        pass

@@ -80,7 +80,7 @@ class NodeProcesses:
 
     def __exit__(self, *_error: object) -> None:
         for node, code in self.stop_all().items():
-            if code in (EXIT_STUCK, -signal.SIGKILL):
+            if code in (EXIT_STUCK, -signal.SIGABRT, -signal.SIGKILL):
                 log = self._logs / f"{node}.log"
                 print(f"{node} hung when it was stopped (exit code {code}): {log}", file=sys.stderr)
 
@@ -133,7 +133,7 @@ class NodeProcesses:
     def stop(self, node: str) -> int:
         """Stops one node with SIGINT, and by force if it takes too long; returns its exit code.
 
-        ``EXIT_STUCK`` or the negative number of SIGKILL is that of a node that hung.
+        ``EXIT_STUCK`` or the negative number of SIGABRT or SIGKILL is that of a node that hung.
         """
         self._interrupt(self._processes[node])
         return self._wait(node)
@@ -162,11 +162,13 @@ class NodeProcesses:
 
     def _wait(self, node: str) -> int:
         process = self._processes.pop(node)
-        try:
-            return process.wait(_STOP_TIMEOUT)
-        except subprocess.TimeoutExpired:
-            self._signal(process, signal.SIGKILL)
-            return process.wait(_STOP_TIMEOUT)
+        # SIGABRT leaves in the log where each thread was.
+        for force in (signal.SIGABRT, signal.SIGKILL):
+            try:
+                return process.wait(_STOP_TIMEOUT)
+            except subprocess.TimeoutExpired:
+                self._signal(process, force)
+        return process.wait(_STOP_TIMEOUT)
 
     @classmethod
     def _interrupt(cls, process: subprocess.Popen[bytes]) -> None:

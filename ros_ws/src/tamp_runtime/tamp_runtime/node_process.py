@@ -21,6 +21,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
+from .domain import leave_in_turn
 from .orderly_executor import OrderlyExecutor
 from .stream_thread import StreamThread
 
@@ -29,6 +30,9 @@ SWITCH_INTERVAL: Final = 1e-4
 
 #: How long the shutdown of a node may take before its process is ended [s].
 STOP_SECONDS: Final = 5.0
+
+#: The same, where not even a thread that looks after that gets the interpreter [s].
+_HELD_SECONDS: Final = 4 * STOP_SECONDS
 
 #: The exit code of a process that was ended because its shutdown hung (sysexits.h: EX_SOFTWARE).
 EXIT_STUCK: Final = 70
@@ -59,10 +63,12 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
     Returns:
         0 after a regular stop; 2, with one sentence on stderr, if the node cannot start with its
         parameters (ValueError or OSError from its constructor). A process that does not get through
-        its shutdown within ``STOP_SECONDS`` is ended with ``EXIT_STUCK`` (70), and stderr shows
-        where each of its threads was.
+        its shutdown within ``STOP_SECONDS`` is ended with ``EXIT_STUCK`` (70), or with 1 later
+        where a library holds the interpreter, and stderr shows where each of its threads was;
+        SIGABRT shows that, too.
     """
     prepare_process()
+    faulthandler.enable()
     interrupts = _Interrupts()
     signal.signal(signal.SIGINT, interrupts)
     # rclpy's own handlers of SIGINT and SIGTERM wake the executor; Python's wait for a message.
@@ -90,6 +96,8 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
         print(f"cannot start: {error}", file=sys.stderr)
         return 2
     finally:
+        # Needs no interpreter, which rclpy keeps while DDS deletes its own.
+        faulthandler.dump_traceback_later(_HELD_SECONDS, exit=True)
         # It looks first whether there is anything to shut down, but rclpy's thread for signals can
         # come in between: an RCLError, which is a RuntimeError.
         with suppress(RuntimeError):
@@ -100,7 +108,9 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
         if clock is not None:
             clock.stop()
         if node is not None:
-            node.destroy_node()
+            with leave_in_turn(STOP_SECONDS / 2):
+                node.destroy_node()
+        faulthandler.cancel_dump_traceback_later()
     return 0
 
 
