@@ -8,7 +8,7 @@ import sys
 
 import pytest
 from ros2_run import PROCESS_TIMEOUT, Spawn
-from tamp_runtime.node_process import EXIT_STUCK
+from tamp_runtime.node_process import EXIT_HELD, EXIT_STUCK
 
 STUCK = """
 import ctypes, sys, time
@@ -42,7 +42,7 @@ sys.exit(run_node(Stuck))
     [
         ("self.stay()", "pass", EXIT_STUCK, ("not stopped after 5 s", "in stay")),
         ("pass", "self.stay()", EXIT_STUCK, ("not stopped after 5 s", "in stay")),
-        ("pass", "self.hold()", 1, ("in hold",)),
+        ("pass", "self.hold()", EXIT_HELD, ("in hold",)),
     ],
 )
 def test_a_stuck_node_is_ended_and_shows_where_it_hangs(

@@ -16,13 +16,16 @@ from typing import Any, Final
 
 from ament_index_python.packages import get_package_share_path
 from tamp_runtime.domain import reserve_domain
-from tamp_runtime.node_process import EXIT_STUCK
+from tamp_runtime.node_process import EXIT_HELD, EXIT_STUCK
 
 #: The four nodes of the graph; each package's node has the package's name.
 NODES: Final = ("sim_node", "perception_node", "planner_node", "motion_node")
 
 #: What nodes name absolutely, by ROS's own custom; in a namespace it is that of the graph there.
 NAMESPACED: Final = {"/clock": "clock", "/tf": "tf", "/tf_static": "tf_static"}
+
+#: Exit codes of nodes that hung when they were stopped: they ended themselves, or were ended.
+HUNG: Final = (EXIT_STUCK, EXIT_HELD, -signal.SIGABRT, -signal.SIGKILL)
 
 #: A node ends itself before (``STOP_SECONDS``), unless the whole machine stands still [s].
 _STOP_TIMEOUT: Final = 30.0
@@ -80,7 +83,7 @@ class NodeProcesses:
 
     def __exit__(self, *_error: object) -> None:
         for node, code in self.stop_all().items():
-            if code in (EXIT_STUCK, -signal.SIGABRT, -signal.SIGKILL):
+            if code in HUNG:
                 log = self._logs / f"{node}.log"
                 print(f"{node} hung when it was stopped (exit code {code}): {log}", file=sys.stderr)
 
@@ -133,7 +136,7 @@ class NodeProcesses:
     def stop(self, node: str) -> int:
         """Stops one node with SIGINT, and by force if it takes too long; returns its exit code.
 
-        ``EXIT_STUCK`` or the negative number of SIGABRT or SIGKILL is that of a node that hung.
+        One of ``HUNG`` is that of a node that hung.
         """
         self._interrupt(self._processes[node])
         return self._wait(node)

@@ -31,11 +31,13 @@ SWITCH_INTERVAL: Final = 1e-4
 #: How long the shutdown of a node may take before its process is ended [s].
 STOP_SECONDS: Final = 5.0
 
-#: The same, where not even a thread that looks after that gets the interpreter [s].
-_HELD_SECONDS: Final = 4 * STOP_SECONDS
-
 #: The exit code of a process that was ended because its shutdown hung (sysexits.h: EX_SOFTWARE).
 EXIT_STUCK: Final = 70
+
+#: The same, where a library keeps the interpreter, so that not even a thread that looks after that
+#: gets it: after how long [s], and faulthandler's exit code.
+_HELD_SECONDS: Final = 4 * STOP_SECONDS
+EXIT_HELD: Final = 1
 
 _POLL_SECONDS: Final = 0.1
 
@@ -63,9 +65,9 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
     Returns:
         0 after a regular stop; 2, with one sentence on stderr, if the node cannot start with its
         parameters (ValueError or OSError from its constructor). A process that does not get through
-        its shutdown within ``STOP_SECONDS`` is ended with ``EXIT_STUCK`` (70), or with 1 later
-        where a library holds the interpreter, and stderr shows where each of its threads was;
-        SIGABRT shows that, too.
+        its shutdown within ``STOP_SECONDS`` is ended with ``EXIT_STUCK`` (70), or later with
+        ``EXIT_HELD`` (1) where a library keeps the interpreter, and stderr shows where each of its
+        threads was; SIGABRT shows that, too.
     """
     prepare_process()
     faulthandler.enable()
