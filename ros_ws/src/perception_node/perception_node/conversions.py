@@ -5,22 +5,15 @@ from __future__ import annotations
 
 from typing import Final
 
-import numpy as np
-from geometry_msgs.msg import Point, Pose, Quaternion, TransformStamped, Vector3
-from sensor_msgs.msg import CameraInfo
+from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from std_msgs.msg import ColorRGBA, Header
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_runtime.messages.scene_graph import graph_to_message
 from visualization_msgs.msg import Marker, MarkerArray
 
-from scene_graph import BOX, COLORS, CYLINDER, PRISM, SPHERE, SceneGraph, rotation_from_quaternion
+from scene_graph import BOX, COLORS, CYLINDER, PRISM, SPHERE, SceneGraph
 
-from .camera import PinholeCamera
-from .errors import BadImageError
 from .pipeline import Perceived
-
-#: How much longer or shorter than 1 the camera's quaternion may be.
-QUATERNION_TOLERANCE: Final = 2e-4
 
 _MARKER_TYPES: Final = {
     BOX: Marker.CUBE,
@@ -28,21 +21,6 @@ _MARKER_TYPES: Final = {
     SPHERE: Marker.SPHERE,
     PRISM: Marker.CUBE,  # RViz has no prism
 }
-
-
-def camera_from_messages(info: CameraInfo, extrinsics: TransformStamped) -> PinholeCamera:
-    """The calibrated camera; raises BadImageError if the messages do not describe one."""
-    if any(abs(value) > 1e-9 for value in info.d):
-        raise BadImageError("the image is distorted; publish a rectified image with d = 0")
-    rotation, shift = extrinsics.transform.rotation, extrinsics.transform.translation
-    quaternion = (rotation.x, rotation.y, rotation.z, rotation.w)
-    if not abs(np.linalg.norm(quaternion) - 1.0) < QUATERNION_TOLERANCE:
-        raise BadImageError("camera/extrinsics does not hold a unit quaternion")
-    pose = np.eye(4)
-    pose[:3, :3] = rotation_from_quaternion(quaternion)
-    pose[:3, 3] = shift.x, shift.y, shift.z
-    intrinsics = np.array(info.k, dtype=np.float64).reshape(3, 3)
-    return PinholeCamera(intrinsics, pose, info.width, info.height)
 
 
 def perceived_to_message(
