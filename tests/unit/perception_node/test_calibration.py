@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What messages say of a camera becomes the camera that took the pictures."""
+"""What is known of a camera becomes the camera that took the pictures."""
 
 from __future__ import annotations
 
@@ -8,53 +8,38 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from scipy.spatial.transform import Rotation
-from sensor_msgs.msg import CameraInfo, RegionOfInterest
-from std_msgs.msg import Header
 
-from perception_node.calibration import Calibration, View
+from perception_node.calibration import Calibration, FramePose, LensModel, View
 from perception_node.errors import BadImageError
 
 LENSES = {
-    "plumb_bob": [-0.31, 0.12, 0.002, -0.001, -0.02],
-    "rational_polynomial": [0.5, -2.0, 0.001, 0.0, 1.2, 0.4, -1.9, 1.1],
-    "equidistant": [0.05, -0.02, 0.01, -0.003],
+    "plumb_bob": (-0.31, 0.12, 0.002, -0.001, -0.02),
+    "rational_polynomial": (0.5, -2.0, 0.001, 0.0, 1.2, 0.4, -1.9, 1.1),
+    "equidistant": (0.05, -0.02, 0.01, -0.003),
 }
 K = np.array([[310.0, 0.0, 161.0], [0.0, 305.0, 118.0], [0.0, 0.0, 1.0]])
 P = np.array([[250.0, 0.0, 158.0, 0.0], [0.0, 252.0, 121.0, 0.0], [0.0, 0.0, 1.0, 0.0]])
 TURN = Rotation.from_euler("xyz", [0.2, -0.1, 0.3])
 
 
-def info(**changes: Any) -> CameraInfo:
-    return CameraInfo(
-        **{
-            "header": Header(frame_id="optical"),
-            "width": 320,
-            "height": 240,
-            "k": K.ravel().tolist(),
-            **changes,
-        }
-    )
+def lens(**changes: Any) -> LensModel:
+    return LensModel(**{"frame": "optical", "width": 320, "height": 240, "k": flat(K), **changes})
 
 
-def transform(
-    parent: str, child: str, shift: tuple[float, ...], turn: Rotation = TURN
-) -> TransformStamped:
-    x, y, z, w = turn.as_quat().tolist()
-    return TransformStamped(
-        header=Header(frame_id=parent),
-        child_frame_id=child,
-        transform=Transform(
-            translation=Vector3(x=shift[0], y=shift[1], z=shift[2]),
-            rotation=Quaternion(x=x, y=y, z=z, w=w),
-        ),
-    )
+def flat(matrix: np.ndarray) -> tuple[float, ...]:
+    return tuple(matrix.ravel().tolist())
+
+
+def pose(
+    parent: str, child: str, shift: tuple[float, float, float], turn: Rotation = TURN
+) -> FramePose:
+    return FramePose(parent, child, shift, tuple(turn.as_quat().tolist()))
 
 
 def calibrated(rectified: bool = False) -> Calibration:
     calibration = Calibration(rectified)
-    calibration.hear_extrinsics(transform("base", "optical", (0.4, -0.2, 0.9)))
+    calibration.place(pose("base", "optical", (0.4, -0.2, 0.9)))
     return calibration
 
 
@@ -62,7 +47,7 @@ def seen_at(view: View) -> tuple[np.ndarray, np.ndarray]:
     """Pixels of the new picture, and where each comes from in the old one."""
     rows, columns = np.mgrid[40:200:20, 60:260:20]
     pixels = np.column_stack([columns.ravel(), rows.ravel()]).astype(np.float64)
-    positions = np.dstack(np.mgrid[0:240, 0:320][::-1]).astype(np.float32)
+    positions = np.moveaxis(np.mgrid[0:240, 0:320][::-1], 0, -1).astype(np.float32)
     assert view.rectification is not None
     where = view.rectification.color(positions)
     return pixels, where[rows.ravel(), columns.ravel()]
@@ -73,8 +58,8 @@ def seen_at(view: View) -> tuple[np.ndarray, np.ndarray]:
 def test_a_rectified_pixel_shows_what_the_lens_showed_on_its_ray(
     model: str, projection: np.ndarray | None
 ) -> None:
-    changes = {} if projection is None else {"p": projection.ravel().tolist()}
-    view = calibrated().view(info(distortion_model=model, d=LENSES[model], **changes), 320, 240)
+    changes = {} if projection is None else {"p": flat(projection)}
+    view = calibrated().view(lens(distortion_model=model, d=LENSES[model], **changes), 320, 240)
     pixels, seen = seen_at(view)
     expected = K if projection is None else P[:, :3]
     assert view.camera.intrinsics == pytest.approx(expected)
@@ -82,20 +67,20 @@ def test_a_rectified_pixel_shows_what_the_lens_showed_on_its_ray(
     points = view.camera.position_world + view.camera.rays_world(pixels)
     from_world = np.linalg.inv(view.camera.world_from_optical)
     rotation, _ = cv2.Rodrigues(from_world[:3, :3])
-    lens = np.array(LENSES[model])
+    distortion = np.array(LENSES[model])
     if model == "equidistant":
         projected, _ = cv2.fisheye.projectPoints(
-            points[:, None], rotation, from_world[:3, 3], K, lens
+            points[:, None], rotation, from_world[:3, 3], K, distortion
         )
     else:
-        projected, _ = cv2.projectPoints(points, rotation, from_world[:3, 3], K, lens)
+        projected, _ = cv2.projectPoints(points, rotation, from_world[:3, 3], K, distortion)
     # OpenCV's maps are in 1/32 of a pixel.
     assert seen == pytest.approx(projected.reshape(-1, 2), abs=0.05)
 
 
 def test_depths_and_labels_are_not_mixed() -> None:
     view = calibrated().view(
-        info(distortion_model="plumb_bob", d=LENSES["plumb_bob"], p=P.ravel().tolist()), 320, 240
+        lens(distortion_model="plumb_bob", d=LENSES["plumb_bob"], p=flat(P)), 320, 240
     )
     rng = np.random.default_rng(3)
     rgb = rng.integers(0, 256, (240, 320, 3)).astype(np.uint8)
@@ -111,22 +96,20 @@ def test_depths_and_labels_are_not_mixed() -> None:
 
 
 def test_pictures_that_do_not_fit_are_refused_before_they_are_rectified() -> None:
-    view = calibrated().view(info(d=LENSES["plumb_bob"]), 320, 240)
+    view = calibrated().view(lens(d=LENSES["plumb_bob"]), 320, 240)
     rgb = np.zeros((240, 320, 3), np.uint8)
     with pytest.raises(BadImageError, match="depth is 160x120 but the image is 320x240"):
         view.observation(rgb, None, np.ones((120, 160), np.float32))
 
 
 def test_rectified_pictures_are_left_as_they_are_and_belong_to_p() -> None:
-    view = calibrated(rectified=True).view(
-        info(d=LENSES["plumb_bob"], p=P.ravel().tolist()), 320, 240
-    )
+    view = calibrated(rectified=True).view(lens(d=LENSES["plumb_bob"], p=flat(P)), 320, 240)
     assert view.rectification is None
     assert view.camera.intrinsics == pytest.approx(P[:, :3])
 
 
 def test_raw_pictures_without_distortion_belong_to_k() -> None:
-    view = calibrated().view(info(d=[0.0] * 5, p=P.ravel().tolist()), 320, 240)
+    view = calibrated().view(lens(d=(0.0,) * 5, p=flat(P)), 320, 240)
     assert view.rectification is None
     assert view.camera.intrinsics == pytest.approx(K)
 
@@ -134,8 +117,8 @@ def test_raw_pictures_without_distortion_belong_to_k() -> None:
 def test_the_second_camera_of_a_stereo_pair_is_beside_its_frame() -> None:
     beside = P.copy()
     beside[0, 3] = -250.0 * 0.12
-    left = calibrated(rectified=True).view(info(p=P.ravel().tolist()), 320, 240).camera
-    right = calibrated(rectified=True).view(info(p=beside.ravel().tolist()), 320, 240).camera
+    left = calibrated(rectified=True).view(lens(p=flat(P)), 320, 240).camera
+    right = calibrated(rectified=True).view(lens(p=flat(beside)), 320, 240).camera
     point = np.array([0.4, -0.2, 0.9]) + TURN.apply([0.1, 0.05, 1.5])
     # The whole projection of REP 104: P (x, y, z, 1).
     u, v, w = beside @ [0.1, 0.05, 1.5, 1.0]
@@ -144,10 +127,10 @@ def test_the_second_camera_of_a_stereo_pair_is_beside_its_frame() -> None:
 
 
 def test_a_part_of_the_sensor_and_a_smaller_picture_of_it() -> None:
-    part = RegionOfInterest(x_offset=40, y_offset=20, width=240, height=180)
-    whole = calibrated().view(info(), 320, 240).camera
-    cut = calibrated().view(info(roi=part), 240, 180).camera
-    half = calibrated().view(info(roi=part), 120, 90).camera
+    part = (40, 20, 240, 180)
+    whole = calibrated().view(lens(), 320, 240).camera
+    cut = calibrated().view(lens(region=part), 240, 180).camera
+    half = calibrated().view(lens(region=part), 120, 90).camera
     point = np.array([0.4, -0.2, 0.9]) + TURN.apply([0.05, -0.03, 1.0])
     assert cut.project(point) == pytest.approx(whole.project(point) - [40, 20])
     assert 2.0 * (half.project(point) + 0.5) == pytest.approx(cut.project(point) + 0.5)
@@ -157,37 +140,37 @@ def test_frames_lead_to_the_camera_where_there_are_no_extrinsics() -> None:
     calibration = Calibration()
     stand, mount = (0.1, 0.2, 0.3), (0.0, 0.1, 0.0)
     with pytest.raises(BadImageError, match="camera/extrinsics has not arrived"):
-        calibration.view(info(), 320, 240)
-    calibration.hear_frames([transform("mount", "optical", mount)])
-    with pytest.raises(BadImageError, match="leads from 'optical' to 'mount' and not on to 'world'"):
-        calibration.view(info(), 320, 240)
-    calibration.hear_frames([transform("world", "mount", stand), transform("world", "x", stand)])
-    pose = calibration.view(info(), 320, 240).camera.world_from_optical
-    assert pose[:3, 3] == pytest.approx(np.array(stand) + TURN.apply(mount))
-    assert pose[:3, :3] == pytest.approx((TURN * TURN).as_matrix())
+        calibration.view(lens(), 320, 240)
+    calibration.add_frames([pose("mount", "optical", mount)])
+    with pytest.raises(
+        BadImageError, match="leads from 'optical' to 'mount' and not on to 'world'"
+    ):
+        calibration.view(lens(), 320, 240)
+    calibration.add_frames([pose("world", "mount", stand), pose("world", "x", stand)])
+    found = calibration.view(lens(), 320, 240).camera.world_from_optical
+    assert found[:3, 3] == pytest.approx(np.array(stand) + TURN.apply(mount))
+    assert found[:3, :3] == pytest.approx((TURN * TURN).as_matrix())
     assert calibration.pose_frame == "world"
-    calibration.hear_extrinsics(transform("base", "optical", (1.0, 2.0, 3.0)))
-    camera = calibration.view(info(), 320, 240).camera
+    calibration.place(pose("base", "optical", (1.0, 2.0, 3.0)))
+    camera = calibration.view(lens(), 320, 240).camera
     assert camera.position_world == pytest.approx([1.0, 2.0, 3.0])
     assert calibration.pose_frame == "base"
 
 
 def test_frames_in_a_circle_are_told() -> None:
     calibration = Calibration()
-    calibration.hear_frames(
-        [transform("a", "optical", (0.0,) * 3), transform("optical", "a", (0.0,) * 3)]
-    )
+    calibration.add_frames([pose("a", "optical", (0.0,) * 3), pose("optical", "a", (0.0,) * 3)])
     with pytest.raises(BadImageError, match="not on to 'world'"):
-        calibration.view(info(), 320, 240)
+        calibration.view(lens(), 320, 240)
 
 
 def test_a_moved_camera_is_seen_where_it_is_now() -> None:
     calibration = calibrated()
-    before = calibration.view(info(), 320, 240)
-    assert calibration.view(info(), 320, 240) is before
-    calibration.hear_extrinsics(transform("base", "optical", (0.0, 0.0, 1.0)))
-    assert calibration.view(info(), 320, 240).camera.position_world == pytest.approx([0, 0, 1])
-    assert calibration.view(info(width=640, height=480), 320, 240).camera.intrinsics[
+    before = calibration.view(lens(), 320, 240)
+    assert calibration.view(lens(), 320, 240) is before
+    calibration.place(pose("base", "optical", (0.0, 0.0, 1.0)))
+    assert calibration.view(lens(), 320, 240).camera.position_world == pytest.approx([0, 0, 1])
+    assert calibration.view(lens(width=640, height=480), 320, 240).camera.intrinsics[
         0, 0
     ] == pytest.approx(155.0)
 
@@ -195,23 +178,22 @@ def test_a_moved_camera_is_seen_where_it_is_now() -> None:
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
-        ({"distortion_model": "spline", "d": [0.1]}, "'spline' .* is none of plumb_bob"),
-        ({"distortion_model": "plumb_bob", "d": [0.1] * 3}, "has 3 coefficients .* 4 or 5"),
-        ({"d": [np.nan, 0.1, 0.0, 0.0, 0.0]}, "calibrate"),
-        ({"k": [0.0] * 9}, "no usable intrinsics"),
+        ({"distortion_model": "spline", "d": (0.1,)}, "'spline' .* is none of plumb_bob"),
+        ({"distortion_model": "plumb_bob", "d": (0.1,) * 3}, "has 3 coefficients .* 4 or 5"),
+        ({"d": (np.nan, 0.1, 0.0, 0.0, 0.0)}, "calibrate"),
+        ({"k": (0.0,) * 9}, "no usable intrinsics"),
         ({"width": 0}, "no width and height"),
-        ({"header": Header(frame_id="other")}, "'optical', but the pictures are in 'other'"),
+        ({"frame": "other"}, "'optical', but the pictures are in 'other'"),
         ({"width": 500}, "ratio of sides"),
     ],
 )
 def test_a_camera_that_cannot_be_is_refused(changes: dict[str, Any], reason: str) -> None:
     with pytest.raises(BadImageError, match=reason):
-        calibrated().view(info(**changes), 320, 240)
+        calibrated().view(lens(**changes), 320, 240)
 
 
 def test_a_pose_that_cannot_be_is_refused() -> None:
-    calibration, message = Calibration(), TransformStamped()
-    message.transform.rotation.w = 0.5
-    calibration.hear_extrinsics(message)
+    calibration = Calibration()
+    calibration.place(FramePose("base", "optical", (0.0,) * 3, (0.0, 0.0, 0.0, 0.5)))
     with pytest.raises(BadImageError, match="unit quaternion"):
-        calibration.view(info(), 320, 240)
+        calibration.view(lens(), 320, 240)

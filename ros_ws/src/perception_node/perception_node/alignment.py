@@ -8,6 +8,7 @@ one thing.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any, Final
 
@@ -32,7 +33,7 @@ FILLS: Final = 2
 #: but only if their channels differ by less than this altogether [0..255].
 FILL_LIKENESS: Final = 60.0
 #: Noise that is less than this does not matter [0..255].
-MIN_NOISE: Final = 1.0
+MIN_NOISE: Final = 0.5
 #: Of pixels as far away as this [px] those are averaged that differ by less than a few times the
 #: noise.
 SMOOTH: Final = (3, 6.0)
@@ -66,9 +67,7 @@ def aligned(observation: Observation, box: tuple[slice, slice]) -> Observation:
         box: the rows and columns that matter; the rest stays as it is.
     """
     noise = color_noise(observation.rgb)
-    part = np.ascontiguousarray(observation.rgb[box])
-    if noise > MIN_NOISE:
-        part = cv2.bilateralFilter(part, 2 * SMOOTH[0] + 1, SMOOTH[1] * noise, float(SMOOTH[0]))
+    part = smoothed(np.ascontiguousarray(observation.rgb[box]), noise)
     smear = smear_of(observation.rgb.shape[1])
     rgb = observation.rgb.copy()
     rgb[box], mixed = sharpened(part, smear, noise)
@@ -96,11 +95,26 @@ def aligned(observation: Observation, box: tuple[slice, slice]) -> Observation:
         depth=depth,
         sure=sure,
         noise=noise,
-        edge_doubt=float(np.hypot(*doubts)),
+        edge_doubt=math.hypot(*doubts),
     )
 
 
-def _moved_to_colour(measured: Array, rgb: NDArray[np.uint8], smear: int) -> tuple[Array, float, Mask]:
+def smoothed(rgb: NDArray[np.uint8], noise: float) -> NDArray[np.uint8]:
+    """The picture with less noise and the same edges.
+
+    Args:
+        rgb: shape (h, w, 3).
+        noise: standard deviation of its channels [0..255].
+    """
+    if noise <= MIN_NOISE:
+        return rgb
+    reach, many = SMOOTH
+    return np.asarray(cv2.bilateralFilter(rgb, 2 * reach + 1, many * noise, float(reach)), np.uint8)
+
+
+def _moved_to_colour(
+    measured: Array, rgb: NDArray[np.uint8], smear: int
+) -> tuple[Array, float, Mask]:
     """Depth with its edges where those of colour are.
 
     Args:
@@ -142,9 +156,7 @@ def disk(reach: int) -> list[tuple[int, int]]:
     return sorted(steps, key=lambda step: step[0] ** 2 + step[1] ** 2)
 
 
-def sharpened(
-    rgb: NDArray[np.uint8], reach: int, noise: float
-) -> tuple[NDArray[np.uint8], float]:
+def sharpened(rgb: NDArray[np.uint8], reach: int, noise: float) -> tuple[NDArray[np.uint8], float]:
     """Gives pixels of an edge the colour of the side that they look like.
 
     Where a blurred edge is between two even colours, its pixels are mixtures: each becomes what the
@@ -205,7 +217,8 @@ def without_edges(depth: Array, band: int) -> Array:
     with np.errstate(invalid="ignore"):
         edge = (bend * depth > limit).view(np.uint8)
     if band > 1:
-        edge = cv2.dilate(edge, np.ones((2 * band - 1, 2 * band - 1), np.uint8))
+        around = np.ones((2 * band - 1, 2 * band - 1), np.uint8)
+        edge = np.asarray(cv2.dilate(edge, around), np.uint8)
     return np.where(edge > 0, np.float32(np.nan), depth)
 
 

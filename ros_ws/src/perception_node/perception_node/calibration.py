@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What messages say of a camera: its lens, its pixels, and where it is."""
+"""What is known of a camera: its lens, its pixels, and where it is."""
 
 from __future__ import annotations
 
@@ -9,9 +9,7 @@ from typing import Any, Final
 
 import cv2
 import numpy as np
-from geometry_msgs.msg import Transform, TransformStamped
 from numpy.typing import NDArray
-from sensor_msgs.msg import CameraInfo
 
 from scene_graph import rotation_from_quaternion
 
@@ -34,6 +32,64 @@ _BEND: Final = np.array([[1.0, -2.0, 1.0]], np.float32)
 
 Array = NDArray[np.float64]
 Pixels = NDArray[Any]
+
+
+@dataclass(frozen=True)
+class LensModel:
+    """A camera as sensor_msgs/CameraInfo describes it, where every symbol is explained.
+
+    Attributes:
+        frame: the optical frame of the pictures.
+        width, height: of the whole sensor [px].
+        region: left, top, width and height of the part that pictures show; without width or height
+            they show all of it [px].
+        distortion_model: its name; empty means plumb_bob.
+        d: its coefficients.
+        k: of the raw pictures, nine numbers by rows [px].
+        r: from the camera to the rectified one, nine numbers by rows; zeros mean none.
+        p: projection of the rectified pictures, twelve numbers by rows; zeros mean none [px].
+    """
+
+    frame: str
+    width: int
+    height: int
+    k: tuple[float, ...]
+    distortion_model: str = ""
+    d: tuple[float, ...] = ()
+    r: tuple[float, ...] = (0.0,) * 9
+    p: tuple[float, ...] = (0.0,) * 12
+    region: tuple[int, int, int, int] = (0, 0, 0, 0)
+
+    @property
+    def shown(self) -> tuple[int, int, int, int]:
+        """Left, top, width and height of the part of the sensor that pictures show [px]."""
+        if self.region[2] and self.region[3]:
+            return self.region
+        return 0, 0, self.width, self.height
+
+
+@dataclass(frozen=True)
+class FramePose:
+    """The pose of the frame ``child`` in the frame ``parent``.
+
+    Attributes:
+        position: shape (3,) [m].
+        quaternion: x, y, z, w.
+    """
+
+    parent: str
+    child: str
+    position: tuple[float, float, float]
+    quaternion: tuple[float, float, float, float]
+
+    def matrix(self, name: str) -> Array:
+        """Homogeneous, shape (4, 4) [m]; raises BadImageError, about ``name``, if it has none."""
+        if not abs(np.linalg.norm(self.quaternion) - 1.0) < QUATERNION_TOLERANCE:
+            raise BadImageError(f"{name} does not hold a unit quaternion")
+        pose = np.eye(4)
+        pose[:3, :3] = rotation_from_quaternion(self.quaternion)
+        pose[:3, 3] = self.position
+        return pose
 
 
 @dataclass(frozen=True)
@@ -111,18 +167,18 @@ class Calibration:
     def __init__(self, rectified: bool = False, world_frame: str = "world") -> None:
         self._rectified = rectified
         self._world_frame = world_frame
-        self._extrinsics: TransformStamped | None = None
-        self._frames: dict[str, TransformStamped] = {}
-        self._known: tuple[Any, View] | None = None
+        self._extrinsics: FramePose | None = None
+        self._frames: dict[str, FramePose] = {}
+        self._known: tuple[tuple[LensModel, int, int], View] | None = None
 
-    def hear_extrinsics(self, message: TransformStamped) -> None:
+    def place(self, extrinsics: FramePose) -> None:
         """Where the camera is: the pose of its optical frame."""
-        self._extrinsics = message
+        self._extrinsics = extrinsics
         self._known = None
 
-    def hear_frames(self, transforms: Iterable[TransformStamped]) -> None:
+    def add_frames(self, frames: Iterable[FramePose]) -> None:
         """Frames that do not move, as on tf_static."""
-        self._frames |= {item.child_frame_id: item for item in transforms}
+        self._frames |= {frame.child: frame for frame in frames}
         self._known = None
 
     @property
@@ -133,34 +189,33 @@ class Calibration:
     @property
     def pose_frame(self) -> str:
         """The frame in which poses are."""
-        return self._extrinsics.header.frame_id if self._extrinsics else self._world_frame
+        return self._extrinsics.parent if self._extrinsics else self._world_frame
 
-    def view(self, info: CameraInfo, width: int, height: int) -> View:
+    def view(self, lens: LensModel, width: int, height: int) -> View:
         """How pictures of this size are taken.
 
         Args:
-            info: of the camera.
+            lens: of the camera.
             width, height: of the picture [px].
 
         Raises:
-            BadImageError: the messages do not describe a camera that takes such pictures.
+            BadImageError: no camera is like this and takes such pictures.
         """
-        key = (info.header.frame_id, info.width, info.height, info.distortion_model,
-               tuple(info.d), tuple(info.k), tuple(info.p), _region(info), width, height)  # fmt: skip
+        key = (lens, width, height)
         if self._known is None or self._known[0] != key:
-            self._known = (key, self._view(info, width, height))
+            self._known = (key, self._view(lens, width, height))
         return self._known[1]
 
-    def _view(self, info: CameraInfo, width: int, height: int) -> View:
-        pose = self._pose(info.header.frame_id)
-        left, top, full_width, full_height = _region(info)
+    def _view(self, lens: LensModel, width: int, height: int) -> View:
+        pose = self._pose(lens.frame)
+        left, top, full_width, full_height = lens.shown
         if not full_width or not full_height:
             raise BadImageError("camera_info has no width and height; calibrate the camera")
         offset = np.array([[0.0, 0.0, left], [0.0, 0.0, top], [0.0, 0.0, 0.0]])
-        raw = np.array(info.k, dtype=np.float64).reshape(3, 3) - offset
-        projection = np.array(info.p, dtype=np.float64).reshape(3, 4)
+        raw = np.array(lens.k, dtype=np.float64).reshape(3, 3) - offset
+        projection = np.array(lens.p, dtype=np.float64).reshape(3, 4)
         has_projection = projection[0, 0] > 0.0 and projection[1, 1] > 0.0
-        distorted = any(abs(value) > 1e-9 for value in info.d)
+        distorted = any(abs(value) > 1e-9 for value in lens.d)
         straight = raw
         if has_projection and (distorted or self._rectified):
             straight = projection[:, :3] - offset
@@ -171,19 +226,19 @@ class Calibration:
         camera = PinholeCamera(straight, pose, full_width, full_height).resized(width, height)
         if not distorted or self._rectified:
             return View(camera)
-        lens = PinholeCamera(raw, pose, full_width, full_height).resized(width, height)
-        return View(camera, Rectification(_maps(info, lens.intrinsics, camera)))
+        taker = PinholeCamera(raw, pose, full_width, full_height).resized(width, height)
+        return View(camera, Rectification(_maps(lens, taker.intrinsics, camera)))
 
     def _pose(self, frame: str) -> Array:
         """Of the optical frame, shape (4, 4) [m]."""
         if self._extrinsics is not None:
-            child = self._extrinsics.child_frame_id
+            child = self._extrinsics.child
             if child and frame and child != frame:
                 raise BadImageError(
                     f"camera/extrinsics is that of {child!r}, but the pictures are in "
                     f"{frame!r}; calibrate the camera whose pictures these are"
                 )
-            return _matrix(self._extrinsics.transform, "camera/extrinsics")
+            return self._extrinsics.matrix("camera/extrinsics")
         if not self.placed:
             raise BadImageError(
                 "camera/extrinsics has not arrived yet; is the camera's driver complete?"
@@ -195,57 +250,38 @@ class Calibration:
         pose, at, passed = np.eye(4), frame, [frame]
         while at != self._world_frame:
             step = self._frames.get(at)
-            if step is None or step.header.frame_id in passed:
+            if step is None or step.parent in passed:
                 raise BadImageError(
                     f"there is no camera/extrinsics, and tf_static leads from {frame!r} to "
                     f"{at!r} and not on to {self._world_frame!r}; publish where the camera is"
                 )
-            pose = _matrix(step.transform, f"tf_static of {at!r}") @ pose
-            at = step.header.frame_id
+            pose = step.matrix(f"tf_static of {at!r}") @ pose
+            at = step.parent
             passed.append(at)
         return pose
 
 
-def _region(info: CameraInfo) -> tuple[int, int, int, int]:
-    """Left, top, width and height of the part of the sensor that pictures show [px]."""
-    roi = info.roi
-    if roi.width and roi.height:
-        return roi.x_offset, roi.y_offset, roi.width, roi.height
-    return 0, 0, info.width, info.height
-
-
-def _matrix(transform: Transform, name: str) -> Array:
-    rotation, shift = transform.rotation, transform.translation
-    quaternion = (rotation.x, rotation.y, rotation.z, rotation.w)
-    if not abs(np.linalg.norm(quaternion) - 1.0) < QUATERNION_TOLERANCE:
-        raise BadImageError(f"{name} does not hold a unit quaternion")
-    pose = np.eye(4)
-    pose[:3, :3] = rotation_from_quaternion(quaternion)
-    pose[:3, 3] = shift.x, shift.y, shift.z
-    return pose
-
-
-def _maps(info: CameraInfo, lens: Array, camera: PinholeCamera) -> tuple[Pixels, Pixels]:
-    """Of a lens with these intrinsics, for the pictures of a camera without distortion."""
-    model = info.distortion_model or "plumb_bob"
+def _maps(lens: LensModel, intrinsics: Array, camera: PinholeCamera) -> tuple[Pixels, Pixels]:
+    """Of the raw pictures with these intrinsics, for the pictures of a camera without distortion."""
+    model = lens.distortion_model or "plumb_bob"
     counts = _COEFFICIENTS.get(model)
     if counts is None:
         raise BadImageError(
             f"the distortion model {model!r} of camera_info is none of {', '.join(_COEFFICIENTS)}; "
             "publish rectified pictures, with d = 0"
         )
-    if len(info.d) not in counts or not np.isfinite(info.d).all():
+    if len(lens.d) not in counts or not np.isfinite(lens.d).all():
         raise BadImageError(
-            f"camera_info has {len(info.d)} coefficients of distortion, and {model} has "
+            f"camera_info has {len(lens.d)} coefficients of distortion, and {model} has "
             f"{' or '.join(map(str, counts))}; calibrate the camera"
         )
-    coefficients = np.array(info.d, dtype=np.float64)
-    rotation = np.array(info.r, dtype=np.float64).reshape(3, 3)
+    coefficients = np.array(lens.d, dtype=np.float64)
+    rotation = np.array(lens.r, dtype=np.float64).reshape(3, 3)
     if not rotation.any():
         rotation = np.eye(3)
     size = (camera.width, camera.height)
     make: Any = cv2.fisheye if model == "equidistant" else cv2
     maps: tuple[Pixels, Pixels] = make.initUndistortRectifyMap(
-        lens, coefficients, rotation, camera.intrinsics, size, cv2.CV_16SC2
+        intrinsics, coefficients, rotation, camera.intrinsics, size, cv2.CV_16SC2
     )
     return maps

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from geometry_msgs.msg import Point, Pose, Quaternion, TransformStamped, Vector3
+from sensor_msgs.msg import CameraInfo
 from std_msgs.msg import ColorRGBA, Header
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_runtime.messages.scene_graph import graph_to_message
@@ -13,6 +14,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from scene_graph import BOX, COLORS, CYLINDER, PRISM, SPHERE, SceneGraph
 
+from .calibration import FramePose, LensModel
 from .pipeline import Perceived
 
 _MARKER_TYPES: Final = {
@@ -21,6 +23,33 @@ _MARKER_TYPES: Final = {
     SPHERE: Marker.SPHERE,
     PRISM: Marker.CUBE,  # RViz has no prism
 }
+
+
+def lens_from_message(info: CameraInfo) -> LensModel:
+    """The camera as the message describes it; whether one can be like this is not looked at."""
+    roi = info.roi
+    return LensModel(
+        frame=info.header.frame_id,
+        width=info.width,
+        height=info.height,
+        k=tuple(info.k),
+        distortion_model=info.distortion_model,
+        d=tuple(info.d),
+        r=tuple(info.r),
+        p=tuple(info.p),
+        region=(roi.x_offset, roi.y_offset, roi.width, roi.height),
+    )
+
+
+def frame_pose_from_message(message: TransformStamped) -> FramePose:
+    """The pose that the message holds; whether its quaternion is one is not looked at."""
+    shift, turn = message.transform.translation, message.transform.rotation
+    return FramePose(
+        message.header.frame_id,
+        message.child_frame_id,
+        (shift.x, shift.y, shift.z),
+        (turn.x, turn.y, turn.z, turn.w),
+    )
 
 
 def perceived_to_message(

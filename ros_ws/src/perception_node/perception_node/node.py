@@ -39,8 +39,13 @@ except ImportError:  # not among the PyPI packages
 
 from scene_graph import GraphStatus
 
-from .calibration import Calibration
-from .conversions import markers_from_graph, perceived_to_message
+from .calibration import Calibration, LensModel
+from .conversions import (
+    frame_pose_from_message,
+    lens_from_message,
+    markers_from_graph,
+    perceived_to_message,
+)
 from .drawing import draw_scene_graph
 from .errors import BadImageError
 from .frame_pairing import FramePairing, StampedSet
@@ -105,7 +110,7 @@ class PerceptionNode(Node):
         }
         tolerance = round(1e9 * self._values["pairing_tolerance"])
         self._pairing = FramePairing(tuple(self._topics), tolerance)
-        self._info: CameraInfo | None = None
+        self._lens: LensModel | None = None
         self._calibration = Calibration(self._values["rectified"], self._values["world_frame"])
         self._status: GraphStatus | None = None
         self._last_image = 0.0
@@ -128,7 +133,7 @@ class PerceptionNode(Node):
             self,
             TransformStamped,
             "camera/extrinsics",
-            self._calibration.hear_extrinsics,
+            self._on_extrinsics,
             LATCHED,
             frames,
         )
@@ -151,8 +156,11 @@ class PerceptionNode(Node):
         self._values = {**self._values, **values}
         self._perception = self._perception.configured(config_from_parameters(self._values))
 
+    def _on_extrinsics(self, message: TransformStamped) -> None:
+        self._calibration.place(frame_pose_from_message(message))
+
     def _on_frames(self, message: Any) -> None:
-        self._calibration.hear_frames(message.transforms)
+        self._calibration.add_frames(map(frame_pose_from_message, message.transforms))
 
     def _receiver(self, stream: str) -> Callable[[Any], None]:
         def receive(message: Any) -> None:
@@ -195,16 +203,16 @@ class PerceptionNode(Node):
 
     def _goal_observation(self, rgb: Any, labels: Any) -> Observation:
         """As the camera would have taken it, if it is known yet."""
-        if self._info is None or not self._calibration.placed:
+        if self._lens is None or not self._calibration.placed:
             return Observation(rgb, labels)
         height, width = rgb.shape[:2]
-        return self._calibration.view(self._info, width, height).observation(rgb, labels, None)
+        return self._calibration.view(self._lens, width, height).observation(rgb, labels, None)
 
     # Frames
 
     def _interpret(self, frame: StampedSet) -> None:
         messages = frame.messages
-        self._info = messages["info"]
+        self._lens = lens_from_message(messages["info"])
         header = Header(stamp=messages["image"].header.stamp, frame_id=self._frame_id())
         rgb = None
         try:
@@ -212,7 +220,7 @@ class PerceptionNode(Node):
                 self._pixels(stream, messages.get(stream))
                 for stream in ("image", "depth", "segmentation")
             )
-            view = self._calibration.view(messages["info"], rgb.shape[1], rgb.shape[0])
+            view = self._calibration.view(self._lens, rgb.shape[1], rgb.shape[0])
             observation = view.observation(rgb, labels, depth)
             rgb = observation.rgb
             perceived = self._perception.perceive(observation)

@@ -95,9 +95,9 @@ class Perception:
         """Raises PerceptionError if the observation cannot be used."""
         config, places = self.config, self.places
         observation.check_values()
-        observation = self._aligned(observation)
+        taken, observation = observation, self._aligned(observation)
         segments = self._segments(observation)
-        check_segments(observation.rgb, segments)
+        check_segments(taken.rgb, segments)
         if problem := table_problem(observation, segments, places):
             raise BadImageError(problem)
         if len(segments) == 0:

@@ -96,9 +96,7 @@ def measure_blocks(
     for segment, covers in zip(segments, above):
         try:
             evidence.append(
-                evidence_of(
-                    segment, segments, depth, camera, noise, covers, sure, edge_doubt
-                )
+                evidence_of(segment, segments, depth, camera, noise, covers, sure, edge_doubt)
             )
         except BadImageError as error:
             raise BadImageError(

@@ -148,7 +148,9 @@ def _labels(region: Region, look: Look, volume: Volume, smear: int) -> NDArray[n
     return labels
 
 
-def _take_rims(labels: NDArray[np.uint16], candidates: Mask, depth: Array, smear: int) -> None:
+def _take_rims(
+    labels: NDArray[np.uint16], candidates: Mask, depth: NDArray[np.float32], smear: int
+) -> None:
     """Gives thin strips that look like nothing the label of the block that they are on.
 
     Where a camera mixes the colours of two blocks, or of a block and what is behind it, there are
@@ -194,7 +196,7 @@ def _measure(facets: Facets, look: Look, region: Region, smear: int) -> _Table:
     counts = sure | (many_sure < FEW)[ids]
     relied = np.where(many_sure < FEW, pixels, many_sure)
 
-    def mean(values: NDArray[np.floating], of: NDArray[np.int32], total: Array) -> Array:
+    def mean(values: NDArray[np.floating], of: NDArray[np.int32], total: NDArray[np.intp]) -> Array:
         flat = values.reshape(len(of), -1)
         sums = [np.bincount(of, column, minlength=count) for column in flat.T]
         return np.stack(sums, axis=-1) / np.maximum(total, 1)[:, None]
