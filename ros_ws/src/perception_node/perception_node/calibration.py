@@ -262,7 +262,7 @@ class Calibration:
 
 
 def _maps(lens: LensModel, intrinsics: Array, camera: PinholeCamera) -> tuple[Pixels, Pixels]:
-    """Of the raw pictures with these intrinsics, for the pictures of a camera without distortion."""
+    """From raw pictures with these intrinsics to those of a camera without distortion."""
     model = lens.distortion_model or "plumb_bob"
     counts = _COEFFICIENTS.get(model)
     if counts is None:
