@@ -143,7 +143,7 @@ def doubtful(blocks: Blocks, names: tuple[str, ...], limits: StabilityLimits) ->
     worst = int(np.argmax(deviations))
     return (
         f"how far {names[worst]} reaches back is not seen: its centre is known to "
-        f"{1000 * deviations[worst]:.0f} mm only (required: {1000 * limits.doubt:.0f} mm); look "
+        f"{1000 * deviations[worst]:.1f} mm only (required: {1000 * limits.doubt:.1f} mm); look "
         "from another side or from higher up"
     )
 

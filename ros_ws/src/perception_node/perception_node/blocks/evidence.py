@@ -24,6 +24,8 @@ MIN_PIXELS: Final = 12
 MIN_SURE: Final = 40
 #: Standard deviation of a point of the outline: it is anywhere between two pixels [px].
 OUTLINE_NOISE: Final = 0.3
+#: An outline has about as many sides, each of which may be displaced as a whole.
+SIDES: Final = 6.0
 #: Of a block at most so many depths are used, spread over all of its pixels.
 MAX_DEPTHS: Final = 200
 #: A neighbour nearer than this much, beyond the noise, is in front of the block [m].
@@ -44,19 +46,17 @@ class Evidence:
         noise: standard deviation of their depths, shape (n,) [m].
         outline: points where the block ends and nothing is before it, between two pixels, shape
             (o, 2) [px].
-        shared: how many of them lie on one straight line along rows or columns, and so are off by
-            the same fraction of a pixel, shape (o,).
         camera: that took the picture.
-        edge_noise: standard deviation of the points of the outline [px].
+        edge_noise: standard deviations of the points of the outline, as those of points of which
+            none is like another, shape (o,) [px].
     """
 
     points: Array
     rays: Array
     noise: Array
     outline: Array
-    shared: Array
     camera: PinholeCamera
-    edge_noise: float = OUTLINE_NOISE
+    edge_noise: Array
 
 
 def evidence_of(
@@ -106,15 +106,27 @@ def evidence_of(
     depths = near.ravel()[at]
     ends = _ends(wide, np.isin(labels, [-1, *covers]), near, noise)
     rays = camera.rays_world(inner)
+    shared = np.concatenate([shared for _, shared in ends])
     return Evidence(
         points=camera.position_world + rays * depths[:, None],
         rays=rays,
         noise=np.maximum(noise * depths**2, 2e-4),
         outline=np.concatenate([points for points, _ in ends]) + (left - 1, top - 1),
-        shared=np.concatenate([shared for _, shared in ends]),
         camera=camera,
-        edge_noise=float(np.hypot(OUTLINE_NOISE, edge_doubt)),
+        edge_noise=_edge_noise(shared, edge_doubt),
     )
+
+
+def _edge_noise(shared: Array, doubt: float) -> Array:
+    """Standard deviations of the points of an outline, shape (o,) [px].
+
+    Args:
+        shared: how many of them lie on one straight line along rows or columns, and so are off by
+            the same fraction of a pixel, shape (o,).
+        doubt: by how much a whole side may be displaced [px].
+    """
+    side = len(shared) / SIDES
+    return np.hypot(OUTLINE_NOISE * np.sqrt(shared), doubt * np.sqrt(side))
 
 
 def _padded(

@@ -141,7 +141,7 @@ class _Problem:
     @classmethod
     def of(cls, model: Model, priors: Sequence[Prior], evidence: Sequence[Evidence]) -> _Problem:
         camera = evidence[0].camera
-        rim = [1.0 / (item.edge_noise * np.sqrt(item.shared)) for item in evidence]
+        rim = [1.0 / item.edge_noise for item in evidence]
         return cls(
             model,
             camera,
