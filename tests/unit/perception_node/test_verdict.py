@@ -105,7 +105,7 @@ def test_a_block_whose_centre_is_known_badly_is_doubtful_unless_it_does_not_even
     status, message = verdict(block(), block(bottom=0.04, doubt=2.0 * limit))
     assert status is GraphStatus.LOW_CONFIDENCE
     assert "how far blue_box reaches back is not seen" in message
-    numbers = f"known to {2000 * limit:.0f} mm only (required: {1000 * limit:.0f} mm)"
+    numbers = f"known to {2000 * limit:.1f} mm only (required: {1000 * limit:.1f} mm)"
     assert f"{numbers}; look from another side" in message
     assert verdict(block(doubt=0.9 * limit), block(bottom=0.04))[0] is GraphStatus.CONFIDENT
     assert verdict(block(), block(bottom=0.09, doubt=2 * limit))[0] is GraphStatus.UNSTABLE
