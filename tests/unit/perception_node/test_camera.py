@@ -65,3 +65,16 @@ def test_a_camera_that_cannot_be_is_refused(damage: str) -> None:
         pose[:3, :3] *= 1.1
     with pytest.raises(BadImageError, match="camera"):
         PinholeCamera(intrinsics, pose, 256, 256)
+
+
+@given(points, st.integers(0, 100), st.integers(0, 100))
+def test_a_part_of_a_depth_picture_is_where_the_rays_of_its_pixels_end(
+    point: tuple[float, float, float], top: int, left: int
+) -> None:
+    depth = np.full((20, 30), float(np.linalg.norm(point)), np.float32)
+    depth[3, 4] = np.nan
+    rows, columns = np.mgrid[top : top + 20, left : left + 30]
+    rays = CAMERA.rays_world(np.stack([columns, rows], axis=-1))
+    found = CAMERA.points_world(depth, np.s_[top : top + 20, left : left + 30])
+    expected = CAMERA.position_world + rays * depth[..., None].astype(np.float64)
+    assert found == pytest.approx(expected, abs=1e-6, nan_ok=True)

@@ -172,7 +172,7 @@ def sharpened(rgb: NDArray[np.uint8], reach: int, noise: float) -> tuple[NDArray
         the edge's height.
     """
     kernel = np.ones((3, 3), np.uint8)
-    span = (cv2.dilate(rgb, kernel) - cv2.erode(rgb, kernel)).max(axis=-1)
+    span = np.maximum.reduce(cv2.split(cv2.dilate(rgb, kernel) - cv2.erode(rgb, kernel)))
     at = np.flatnonzero(span > max(FLAT, FLAT_NOISE * noise))
     if len(at) == 0:
         return rgb, 0.0

@@ -87,3 +87,23 @@ class PinholeCamera:
         y = (pixels[..., 1] - k[1, 2]) / k[1, 1]
         optical = np.stack([x, y, np.ones_like(x)], axis=-1)
         return optical @ self.world_from_optical[:3, :3].T
+
+    def points_world(
+        self, depth: NDArray[np.float32], box: tuple[slice, slice]
+    ) -> NDArray[np.float32]:
+        """Where the pixels of a part of a picture are, shape (h, w, 3) [m]; NaN of NaN.
+
+        Args:
+            depth: along the optical axis, shape (h, w) [m].
+            box: the rows and columns of the picture that the part has.
+        """
+        # Rays are sums of what the column and what the row adds.
+        rows, columns = (np.arange(side.start, side.stop) for side in box)
+        across = self.rays_world(np.stack([columns, np.zeros_like(columns)], axis=-1))
+        down = self.rays_world(np.stack([np.zeros_like(rows), rows], axis=-1))
+        down -= self.rays_world((0.0, 0.0))
+        points = np.empty((*depth.shape, 3), np.float32)
+        for axis, origin in enumerate(self.position_world):
+            rays = down[:, None, axis].astype(np.float32) + across[:, axis].astype(np.float32)
+            np.add(rays * depth, np.float32(origin), out=points[..., axis])
+        return points

@@ -51,12 +51,9 @@ def look_at(observation: Observation, volume: Volume) -> Region | None:
     part = np.ascontiguousarray(observation.rgb[box])
     near = depth[box].astype(np.float32)
     near[~(near > 0.0) | np.isinf(near)] = np.nan
-    columns, rows = np.meshgrid(*(np.arange(side.start, side.stop) for side in box[::-1]))
-    rays = camera.rays_world(np.stack([columns, rows], axis=-1)).astype(np.float32)
-    points = camera.position_world.astype(np.float32) + rays * near[..., None]
-    with np.errstate(invalid="ignore"):
-        across = points[..., :2]
-        inside = ((across > volume.low[:2]) & (across < volume.high[:2])).all(axis=-1)
-        inside &= points[..., 2] < volume.high[2]
+    points = camera.points_world(near, box)
+    inside = points[..., 2] < volume.high[2]
+    for axis in (0, 1):
+        inside &= (points[..., axis] > volume.low[axis]) & (points[..., axis] < volume.high[axis])
     sure = ~np.isnan(near) if observation.sure is None else observation.sure[box]
     return Region(box, part, near, sure, points, inside)
