@@ -25,6 +25,7 @@ OTHER: Stacks = ((), ("green_box", "blue_box", "red_box"), ("purple_box", "yello
 
 LABELS = "camera/segmentation"
 #: The images of a frame and their camera info, in the order in which the simulator makes them.
+DEFAULT_CAMERA = CameraConfig()
 TOPICS = {
     "camera/image_raw": Image,
     "camera/depth/image_raw": Image,
@@ -69,22 +70,22 @@ class FakeCamera:
         """Publishes where the camera is."""
         self._extrinsics.publish(extrinsics_message(CameraConfig(), Time()))
 
-    def calibrate_and_show(self, frame: Frame) -> SceneGraph:
+    def calibrate_and_show(self, frame: Frame, config: CameraConfig = DEFAULT_CAMERA) -> SceneGraph:
         """The first graph after the extrinsics have arrived."""
         self.calibrate()
         answers: list[SceneGraph] = []
 
         def arrived() -> bool:
-            answers.append(self.show(frame))
+            answers.append(self.show(frame, config))
             return "camera/extrinsics" not in answers[-1].message
 
         self._wait_until(arrived, what="extrinsics")
         return answers[-1]
 
-    def messages(self, frame: Frame) -> dict[str, Any]:
+    def messages(self, frame: Frame, config: CameraConfig = DEFAULT_CAMERA) -> dict[str, Any]:
         """Everything of a frame by topic, the labels too, with a new stamp."""
         self._seconds += 1
-        return dict(zip(TOPICS, camera_messages(frame, CameraConfig(), self.stamp)))
+        return dict(zip(TOPICS, camera_messages(frame, config, self.stamp)))
 
     def publish(self, messages: Mapping[str, Any]) -> None:
         """Publishes those messages that this camera has a topic for."""
@@ -100,6 +101,6 @@ class FakeCamera:
         )
         return self.graphs[-1]
 
-    def show(self, frame: Frame) -> SceneGraph:
-        """The graph of a frame."""
-        return self.send(self.messages(frame))
+    def show(self, frame: Frame, config: CameraConfig = DEFAULT_CAMERA) -> SceneGraph:
+        """The graph of a frame that a camera took."""
+        return self.send(self.messages(frame, config))

@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from perception_node.alignment import smoothed
 from perception_node.noise import color_noise
 from perception_node.segment.facets import Facets, Look, find_facets
-from perception_node.segment.region import fill
 
 RED, BLUE = (180, 30, 30), (30, 50, 170)
 NO_DEPTH = np.full((40, 60), np.nan, np.float32)
@@ -24,7 +24,8 @@ def halves(left: tuple[int, ...], right: tuple[int, ...]) -> NDArray[np.uint8]:
 
 
 def facets_of(rgb: NDArray[np.uint8], depth: NDArray[np.float32] = NO_DEPTH) -> Facets:
-    return find_facets(EVERYWHERE, Look.of(rgb), depth)
+    noise = color_noise(rgb)
+    return find_facets(EVERYWHERE, Look.of(smoothed(rgb, noise), noise), depth)
 
 
 def test_two_colours_are_two_facets_that_touch_along_their_border() -> None:
@@ -37,7 +38,7 @@ def test_two_colours_are_two_facets_that_touch_along_their_border() -> None:
 
 def test_one_colour_lit_differently_is_two_facets_of_one_hue() -> None:
     bright, dim = (180, 40, 30), (126, 28, 21)
-    look = Look.of(halves(bright, dim))
+    look = Look.of(halves(bright, dim), 0.0)
     assert facets_of(halves(bright, dim)).count == 2
     assert look.chroma[0, 0] == pytest.approx(look.chroma[0, -1], abs=0.03)
 
@@ -58,7 +59,7 @@ def test_a_jump_of_depth_ends_a_facet(jump: float, count: int) -> None:
 def test_pixels_that_are_no_candidates_are_of_no_facet() -> None:
     candidates = EVERYWHERE.copy()
     candidates[:, 25:35] = False
-    facets = find_facets(candidates, Look.of(halves(RED, RED)), NO_DEPTH)
+    facets = find_facets(candidates, Look.of(halves(RED, RED), 0.0), NO_DEPTH)
     assert facets.count == 2 and len(facets.borders) == 0
     assert not facets.ids[:, 25:35].any()
 
@@ -84,27 +85,3 @@ def test_the_noise_of_colours_is_found(noise: float, seed: int) -> None:
     # Its steps are those of whole grey levels.
     assert color_noise(rgb) == pytest.approx(noise, rel=0.2, abs=0.7)
     assert color_noise(exact) == 0.0
-
-
-def test_pixels_without_depth_get_that_of_the_neighbour_that_looks_like_them() -> None:
-    rgb, depth = halves(RED, BLUE), np.full((40, 60), 1.0, np.float32)
-    depth[:, 30:] = 2.0
-    bare = depth.copy()
-    bare[:, 28:32] = np.nan
-    assert np.array_equal(fill(bare, rgb), depth)
-
-
-def test_known_depth_stays_and_what_is_far_from_any_stays_unknown() -> None:
-    rgb, depth = halves(RED, RED), np.full((40, 60), 1.0, np.float32)
-    depth[10:30, 10:30] = np.nan
-    filled = fill(depth, rgb)
-    known = ~np.isnan(depth)
-    assert np.array_equal(filled[known], depth[known])
-    assert np.isnan(filled[13:27, 13:27]).all()
-    assert fill(depth, halves(BLUE, RED))[12, 31] == 1.0
-
-
-def test_a_neighbour_of_another_colour_is_not_asked() -> None:
-    rgb, depth = halves(RED, BLUE), np.full((40, 60), 1.0, np.float32)
-    depth[:, :30] = np.nan
-    assert np.isnan(fill(depth, rgb)[:, :30]).all()

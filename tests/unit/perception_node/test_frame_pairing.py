@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Images of one time become one frame; the newest wins."""
 
+import random
+
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from perception_node.frame_pairing import FramePairing
 
@@ -117,3 +121,53 @@ def test_a_camera_whose_clock_starts_anew_is_followed() -> None:
     pairing = FramePairing(STREAMS)
     assert feed(pairing, 10**12, *STREAMS) == [10**12]
     assert feed(pairing, 5, *STREAMS) == [5]
+
+
+def test_a_detector_that_takes_half_a_second_is_waited_for() -> None:
+    pairing, period = FramePairing(STREAMS), 33_000_000
+    done: list[int] = []
+    for number in range(90):
+        now = number * period
+        streams = {"image": now, "depth": now}
+        if number >= 15 and number % 5 == 0:
+            streams["segmentation"] = now - 15 * period
+        for stream, stamp in streams.items():
+            complete = pairing.add(stream, stamp, (stream, stamp), now * 1e-9)
+            done += [] if complete is None else [complete.stamp]
+    assert done == [number * period for number in range(0, 75, 5)]
+
+
+def test_sets_that_have_waited_for_long_are_forgotten() -> None:
+    pairing = FramePairing(STREAMS)
+    for number in range(1000):
+        pairing.add("image", number, "", number / 1000)
+    assert pairing.add("depth", 1, "", 1.0) is None
+    assert pairing.add("segmentation", 1, "", 1.0) is None
+    assert pairing.add("depth", 999, "", 1.0) is None
+    complete = pairing.add("segmentation", 999, "", 1.0)
+    assert complete is not None and complete.arrival == 0.999
+
+
+JITTER = st.integers(-40, 40)
+
+
+@given(st.lists(st.tuples(JITTER, JITTER, JITTER), min_size=1, max_size=12), st.randoms())
+def test_stamps_that_differ_by_less_than_half_a_period_are_paired(
+    jitters: list[tuple[int, int, int]], chance: random.Random
+) -> None:
+    pairing = FramePairing(STREAMS, tolerance=90)
+    for number, shifts in enumerate(jitters):
+        taken = [(name, 200 * number + shift) for name, shift in zip(STREAMS, shifts)]
+        chance.shuffle(taken)
+        sets = [pairing.add(name, stamp, (number, stamp), 0.0) for name, stamp in taken]
+        assert sets[:2] == [None, None] and sets[2] is not None
+        assert {message[0] for message in sets[2].messages.values()} == {number}
+
+
+def test_of_two_sets_within_the_tolerance_a_message_goes_to_the_nearer_one() -> None:
+    pairing = FramePairing(("image", "depth"), tolerance=10)
+    pairing.add("image", 100, "first", 0.0)
+    pairing.add("image", 108, "second", 0.0)
+    complete = pairing.add("depth", 106, "depth", 0.0)
+    assert complete is not None and complete.messages["image"] == "second"
+    assert pairing.add("depth", 119, "depth", 0.0) is None

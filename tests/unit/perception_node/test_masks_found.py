@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from seen_worlds import TOWERS, camera_of, move_hand, observe, put
 
 from perception_node import Observation
+from perception_node.alignment import aligned
 from perception_node.errors import BadImageError
 from perception_node.segment import Segments, Volume
 from perception_node.segment.rgbd import find_in_rgbd
@@ -34,7 +35,10 @@ CAMERAS = {
 
 
 def find(world: World, frame: Frame, volume: Volume | None = VOLUME) -> Segments:
-    return find_in_rgbd(replace(observe(world, frame), labels=None), volume)
+    observation = replace(observe(world, frame), labels=None)
+    if volume is not None and (box := volume.seen_by(camera_of(world))) is not None:
+        observation = aligned(observation, box)
+    return find_in_rgbd(observation, volume)
 
 
 def overlaps(labels: NDArray[np.uint16], found: Segments) -> list[float]:

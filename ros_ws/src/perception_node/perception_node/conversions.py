@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from typing import Final
 
-import numpy as np
 from geometry_msgs.msg import Point, Pose, Quaternion, TransformStamped, Vector3
 from sensor_msgs.msg import CameraInfo
 from std_msgs.msg import ColorRGBA, Header
@@ -13,14 +12,10 @@ from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_runtime.messages.scene_graph import graph_to_message
 from visualization_msgs.msg import Marker, MarkerArray
 
-from scene_graph import BOX, COLORS, CYLINDER, PRISM, SPHERE, SceneGraph, rotation_from_quaternion
+from scene_graph import BOX, COLORS, CYLINDER, PRISM, SPHERE, SceneGraph
 
-from .camera import PinholeCamera
-from .errors import BadImageError
+from .calibration import FramePose, LensModel
 from .pipeline import Perceived
-
-#: How much longer or shorter than 1 the camera's quaternion may be.
-QUATERNION_TOLERANCE: Final = 2e-4
 
 _MARKER_TYPES: Final = {
     BOX: Marker.CUBE,
@@ -30,19 +25,31 @@ _MARKER_TYPES: Final = {
 }
 
 
-def camera_from_messages(info: CameraInfo, extrinsics: TransformStamped) -> PinholeCamera:
-    """The calibrated camera; raises BadImageError if the messages do not describe one."""
-    if any(abs(value) > 1e-9 for value in info.d):
-        raise BadImageError("the image is distorted; publish a rectified image with d = 0")
-    rotation, shift = extrinsics.transform.rotation, extrinsics.transform.translation
-    quaternion = (rotation.x, rotation.y, rotation.z, rotation.w)
-    if not abs(np.linalg.norm(quaternion) - 1.0) < QUATERNION_TOLERANCE:
-        raise BadImageError("camera/extrinsics does not hold a unit quaternion")
-    pose = np.eye(4)
-    pose[:3, :3] = rotation_from_quaternion(quaternion)
-    pose[:3, 3] = shift.x, shift.y, shift.z
-    intrinsics = np.array(info.k, dtype=np.float64).reshape(3, 3)
-    return PinholeCamera(intrinsics, pose, info.width, info.height)
+def lens_from_message(info: CameraInfo) -> LensModel:
+    """The camera as the message describes it; whether one can be like this is not looked at."""
+    roi = info.roi
+    return LensModel(
+        frame=info.header.frame_id,
+        width=info.width,
+        height=info.height,
+        k=tuple(info.k),
+        distortion_model=info.distortion_model,
+        d=tuple(info.d),
+        r=tuple(info.r),
+        p=tuple(info.p),
+        region=(roi.x_offset, roi.y_offset, roi.width, roi.height),
+    )
+
+
+def frame_pose_from_message(message: TransformStamped) -> FramePose:
+    """The pose that the message holds; whether its quaternion is one is not looked at."""
+    shift, turn = message.transform.translation, message.transform.rotation
+    return FramePose(
+        message.header.frame_id,
+        message.child_frame_id,
+        (shift.x, shift.y, shift.z),
+        (turn.x, turn.y, turn.z, turn.w),
+    )
 
 
 def perceived_to_message(

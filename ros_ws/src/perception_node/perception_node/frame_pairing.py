@@ -7,8 +7,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-#: Incomplete sets that are kept waiting; more arrive only if a stream is broken.
-_WAITING: Final = 8
+#: How long incomplete sets are kept, for a detector that takes its time over its labels [s], and
+#: how many: more arrive only if a stream is broken.
+_PATIENCE: Final = 1.0
+_WAITING: Final = 64
 #: A stream of which so many times less came than of another one is silent; its last message may
 #: have been one of a set that was lost otherwise.
 _SILENT: Final = 8
@@ -19,7 +21,7 @@ class StampedSet:
     """One message of each stream, all of one time.
 
     Attributes:
-        stamp: time of acquisition [ns].
+        stamp: time of acquisition, of the first that arrived [ns].
         arrival: when the first of them arrived, on the clock of the caller [s].
         messages: by stream.
     """
@@ -44,10 +46,17 @@ class _Arrivals:
 
 
 class FramePairing:
-    """Collects messages by stamp; hands out each complete set once, the newest only."""
+    """Collects messages by stamp; hands out each complete set once, the newest only.
 
-    def __init__(self, streams: Sequence[str]) -> None:
+    Args:
+        streams: of which a set has one message each.
+        tolerance: by which stamps of one set may differ; a message goes to the nearest set that
+            still lacks it [ns].
+    """
+
+    def __init__(self, streams: Sequence[str], tolerance: int = 0) -> None:
         self._streams = frozenset(streams)
+        self._tolerance = tolerance
         self._waiting: dict[int, tuple[float, dict[str, Any]]] = {}
         self._newest = -(2**63)
         self._since: dict[str, _Arrivals] = {stream: _Arrivals() for stream in streams}
@@ -70,16 +79,35 @@ class FramePairing:
             self._newest = -(2**63)
             self._since = {name: _Arrivals() for name in self._streams}
         self._note(stream, stamp)
-        first, messages = self._waiting.setdefault(stamp, (arrival, {}))
+        key = self._nearest(stream, stamp)
+        first, messages = self._waiting.setdefault(key, (arrival, {}))
         messages[stream] = message
         if messages.keys() != self._streams:
-            while len(self._waiting) > _WAITING:
-                del self._waiting[min(self._waiting)]
+            self._forget(arrival)
             return None
-        self._newest = stamp
-        self._since = {stream: _Arrivals(last=stamp) for stream in self._streams}
-        self._waiting = {key: kept for key, kept in self._waiting.items() if key > stamp}
-        return StampedSet(stamp, first, messages)
+        self._newest = key
+        self._since = {stream: _Arrivals(last=key) for stream in self._streams}
+        self._waiting = {other: kept for other, kept in self._waiting.items() if other > key}
+        return StampedSet(key, first, messages)
+
+    def _nearest(self, stream: str, stamp: int) -> int:
+        """The stamp of the set that a message belongs to."""
+        if not self._tolerance:
+            return stamp
+        near = [
+            key
+            for key, (_, messages) in self._waiting.items()
+            if abs(key - stamp) <= self._tolerance and stream not in messages
+        ]
+        return min(near, key=lambda key: abs(key - stamp), default=stamp)
+
+    def _forget(self, now: float) -> None:
+        """Sets that have waited for too long, and the oldest of too many."""
+        for stamp in sorted(self._waiting):
+            first, _ = self._waiting[stamp]
+            if first >= now - _PATIENCE and len(self._waiting) <= _WAITING:
+                break
+            del self._waiting[stamp]
 
     def missing(self) -> tuple[str, ...]:
         """Streams that the waiting sets lack, sorted; empty if none is waiting.
@@ -117,7 +145,8 @@ class FramePairing:
             )
         return (
             f"{named(self.missing() or self._streams)} arrives with other stamps than the other "
-            "images; have the camera stamp what it takes at the same time alike"
+            "images; have the camera stamp what it takes at the same time alike, or set "
+            "pairing_tolerance"
         )
 
     def _note(self, stream: str, stamp: int) -> None:

@@ -17,19 +17,35 @@ from sensor_msgs.msg import CameraInfo, Image
 from std_msgs.msg import Header
 from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import ImageToSceneGraph
-from tamp_runtime.messages.images import ImageError, array_from_image, image_from_array
+from tamp_runtime.messages.images import (
+    ImageError,
+    color_from_image,
+    depth_from_image,
+    image_from_array,
+    labels_from_image,
+)
 from tamp_runtime.messages.stamps import nanoseconds
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.presence import Presence
-from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
+from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA, STATUS
 from tamp_runtime.subscriptions import AdaptiveSubscription
 from visualization_msgs.msg import MarkerArray
 
+try:
+    from tf2_msgs.msg import TFMessage
+except ImportError:  # not among the PyPI packages
+    TFMessage = None
+
 from scene_graph import GraphStatus
 
-from .camera import PinholeCamera
-from .conversions import camera_from_messages, markers_from_graph, perceived_to_message
+from .calibration import Calibration, LensModel
+from .conversions import (
+    frame_pose_from_message,
+    lens_from_message,
+    markers_from_graph,
+    perceived_to_message,
+)
 from .drawing import draw_scene_graph
 from .errors import BadImageError
 from .frame_pairing import FramePairing, StampedSet
@@ -39,8 +55,12 @@ from .pipeline import Perceived, Perception
 from .segment import SEGMENTATION_TOPIC
 from .visual_module.weights import DEFAULT_WEIGHTS, load_weights
 
-#: Encodings of the images of a frame.
-ENCODINGS: Final = {"image": "rgb8", "depth": "32FC1", "segmentation": "16UC1"}
+#: What makes pixels of the images of a frame.
+READERS: Final[dict[str, Callable[[Image], Any]]] = {
+    "image": color_from_image,
+    "depth": depth_from_image,
+    "segmentation": labels_from_image,
+}
 #: The messages that make a frame; labels only where masks are given.
 TOPICS: Final = {
     "image": "camera/image_raw",
@@ -58,10 +78,12 @@ class PerceptionNode(Node):
     Subscribes:
         camera/image_raw, camera/depth/image_raw (sensor_msgs/Image), camera/camera_info
             (sensor_msgs/CameraInfo) and, where the parameter mask_source says so,
-            camera/segmentation (sensor_msgs/Image): paired by equal stamps; only the newest
+            camera/segmentation (sensor_msgs/Image): paired by their stamps; only the newest
             complete frame is interpreted
         camera/extrinsics (geometry_msgs/TransformStamped), latched or sent again and again; these
             and the images are heard reliable or best effort, as they are published
+        /tf_static (tf2_msgs/TFMessage), where there are such messages: leads to the camera's frame
+            as long as there are no extrinsics
         diagnostics (diagnostic_msgs/DiagnosticArray): of the other nodes
     Publishes:
         scene_graph (tamp_interfaces/SceneGraph): one for each frame, its status says whether it can
@@ -86,9 +108,10 @@ class PerceptionNode(Node):
         self._topics = {
             stream: topic for stream, topic in TOPICS.items() if given or stream != "segmentation"
         }
-        self._pairing = FramePairing(tuple(self._topics))
-        self._info: CameraInfo | None = None
-        self._extrinsics: TransformStamped | None = None
+        tolerance = round(1e9 * self._values["pairing_tolerance"])
+        self._pairing = FramePairing(tuple(self._topics), tolerance)
+        self._lens: LensModel | None = None
+        self._calibration = Calibration(self._values["rectified"], self._values["world_frame"])
         self._status: GraphStatus | None = None
         self._last_image = 0.0
         self._incomplete_since: float | None = None
@@ -104,11 +127,20 @@ class PerceptionNode(Node):
         self._markers = self.create_publisher(MarkerArray, "scene_graph/markers", RELIABLE)
         frames = MutuallyExclusiveCallbackGroup()
         for stream, topic in self._topics.items():
-            kind = Image if stream in ENCODINGS else CameraInfo
+            kind = Image if stream in READERS else CameraInfo
             AdaptiveSubscription(self, kind, topic, self._receiver(stream), NEWEST, frames)
         AdaptiveSubscription(
-            self, TransformStamped, "camera/extrinsics", self._on_extrinsics, LATCHED, frames
+            self,
+            TransformStamped,
+            "camera/extrinsics",
+            self._on_extrinsics,
+            LATCHED,
+            frames,
         )
+        if TFMessage is not None:
+            self.create_subscription(
+                TFMessage, "/tf_static", self._on_frames, STATUS, callback_group=frames
+            )
         self.create_timer(0.5, self._on_timer, callback_group=frames)
         self.create_service(
             ImageToSceneGraph,
@@ -125,7 +157,10 @@ class PerceptionNode(Node):
         self._perception = self._perception.configured(config_from_parameters(self._values))
 
     def _on_extrinsics(self, message: TransformStamped) -> None:
-        self._extrinsics = message
+        self._calibration.place(frame_pose_from_message(message))
+
+    def _on_frames(self, message: Any) -> None:
+        self._calibration.add_frames(map(frame_pose_from_message, message.transforms))
 
     def _receiver(self, stream: str) -> Callable[[Any], None]:
         def receive(message: Any) -> None:
@@ -158,28 +193,37 @@ class PerceptionNode(Node):
         start = time.perf_counter()
         header = Header(stamp=request.image.header.stamp, frame_id=self._frame_id())
         try:
-            rgb = array_from_image(request.image, ENCODINGS["image"])
-            labels = array_from_image(request.segmentation, ENCODINGS["segmentation"])
-            known = self._info is not None and self._extrinsics is not None
-            camera = self._camera() if known else None
-            perceived = self._perception.perceive(Observation(rgb, labels, None, camera))
+            rgb = color_from_image(request.image)
+            labels = labels_from_image(request.segmentation)
+            perceived = self._perception.perceive(self._goal_observation(rgb, labels))
         except (ImageError, BadImageError) as error:
             perceived = self._perception.rejected(GraphStatus.BAD_IMAGE, str(error))
         response.scene_graph = perceived_to_message(perceived, header, time.perf_counter() - start)
         return response
 
+    def _goal_observation(self, rgb: Any, labels: Any) -> Observation:
+        """As the camera would have taken it, if it is known yet."""
+        if self._lens is None or not self._calibration.placed:
+            return Observation(rgb, labels)
+        height, width = rgb.shape[:2]
+        return self._calibration.view(self._lens, width, height).observation(rgb, labels, None)
+
     # Frames
 
     def _interpret(self, frame: StampedSet) -> None:
         messages = frame.messages
-        self._info = messages["info"]
+        self._lens = lens_from_message(messages["info"])
         header = Header(stamp=messages["image"].header.stamp, frame_id=self._frame_id())
         rgb = None
         try:
-            rgb, depth = (self._pixels(stream, messages[stream]) for stream in ("image", "depth"))
-            given = messages.get("segmentation")
-            labels = None if given is None else self._pixels("segmentation", given)
-            perceived = self._perception.perceive(Observation(rgb, labels, depth, self._camera()))
+            rgb, depth, labels = (
+                self._pixels(stream, messages.get(stream))
+                for stream in ("image", "depth", "segmentation")
+            )
+            view = self._calibration.view(self._lens, rgb.shape[1], rgb.shape[0])
+            observation = view.observation(rgb, labels, depth)
+            rgb = observation.rgb
+            perceived = self._perception.perceive(observation)
         except (ImageError, BadImageError) as error:
             perceived = self._perception.rejected(GraphStatus.BAD_IMAGE, str(error))
         except Exception as error:  # a defect must neither stop the node nor go unseen
@@ -194,22 +238,16 @@ class PerceptionNode(Node):
             # A picture is in the frame of the camera that took it, not in that of the poses.
             self._drawings.publish(image_from_array(drawing, "rgb8", messages["image"].header))
 
-    def _pixels(self, stream: str, message: Image) -> Any:
+    def _pixels(self, stream: str, message: Image | None) -> Any:
+        if message is None:
+            return None
         try:
-            return array_from_image(message, ENCODINGS[stream])
+            return READERS[stream](message)
         except ImageError as error:
             raise BadImageError(f"{TOPICS[stream]}: {error}") from error
 
-    def _camera(self) -> PinholeCamera:
-        """Raises BadImageError while the camera is unknown."""
-        if self._info is None or self._extrinsics is None:
-            raise BadImageError(
-                "camera/extrinsics has not arrived yet; is the camera's driver complete?"
-            )
-        return camera_from_messages(self._info, self._extrinsics)
-
     def _frame_id(self) -> str:
-        return self._extrinsics.header.frame_id if self._extrinsics else "world"
+        return self._calibration.pose_frame
 
     def _publish(self, perceived: Perceived, header: Header, arrival: float) -> None:
         if not self.context.ok():

@@ -34,12 +34,20 @@ class Observation:
         depth: along the optical axis, shape (height, width) [m]; without it there are no poses, and
             nothing is said about hidden or unstable blocks.
         camera: without it there are neither poses nor places.
+        sure: where depth is as it was measured, and not near an edge, shape (height, width); None:
+            wherever it is known.
+        noise: standard deviation of the picture's channels, as far as it is known [0..255].
+        edge_doubt: by how much more than the pixels' own size edges may be displaced, as a standard
+            deviation [px].
     """
 
     rgb: NDArray[np.uint8]
     labels: NDArray[np.integer] | None = None
     depth: NDArray[np.floating] | None = None
     camera: PinholeCamera | None = None
+    sure: NDArray[np.bool_] | None = None
+    noise: float = 0.0
+    edge_doubt: float = 0.0
 
     def checked(self) -> Observation:
         """The same, with the camera as it is for images of this size.

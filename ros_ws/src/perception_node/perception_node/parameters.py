@@ -65,6 +65,28 @@ PARAMETERS: Final = (
         check=_mask_source_problem,
     ),
     ParameterSpec(
+        "rectified",
+        False,
+        "the pictures have no distortion though camera_info's d says so, as those of image_rect",
+        read_only=True,
+    ),
+    ParameterSpec(
+        "world_frame",
+        "world",
+        "in which poses are where the camera's place is found in tf_static, for lack of "
+        "camera/extrinsics, which name their own",
+        read_only=True,
+    ),
+    ParameterSpec(
+        "pairing_tolerance",
+        0.0,
+        "stamps of pictures taken together may differ by this; less than half of the time between "
+        "two pictures [s]",
+        minimum=0.0,
+        maximum=0.5,
+        read_only=True,
+    ),
+    ParameterSpec(
         "threads",
         1,
         "processor threads of the visual module",

@@ -10,6 +10,7 @@ import numpy as np
 
 from scene_graph import GraphStatus, SceneGraph
 
+from .alignment import aligned
 from .blocks import centres, find_blocks, measure
 from .config import PerceptionConfig
 from .errors import BadImageError, NotUprightError, PerceptionError
@@ -94,8 +95,9 @@ class Perception:
         """Raises PerceptionError if the observation cannot be used."""
         config, places = self.config, self.places
         observation.check_values()
+        taken, observation = observation, self._aligned(observation)
         segments = self._segments(observation)
-        check_segments(observation.rgb, segments)
+        check_segments(taken.rgb, segments)
         if problem := table_problem(observation, segments, places):
             raise BadImageError(problem)
         if len(segments) == 0:
@@ -117,8 +119,15 @@ class Perception:
         graph = build_graph(observation, segments, occlusion, coordinates, standing, blocks, names)
         verdict = judge(graph, occlusion, standing, blocks, names, config)
         if verdict.status is not GraphStatus.CONFIDENT:
-            verdict = verdict._replace(message=verdict.message + grain(observation.rgb))
+            verdict = verdict._replace(message=verdict.message + grain(observation.noise))
         return Perceived(graph, *verdict, segments)
+
+    def _aligned(self, observation: Observation) -> Observation:
+        """With edges where they are, where the places are seen and depth can be moved to colour."""
+        if self._volume is None or observation.camera is None or observation.depth is None:
+            return observation
+        box = self._volume.seen_by(observation.camera)
+        return observation if box is None else aligned(observation, box)
 
     def _segments(self, observation: Observation) -> Segments:
         segmenter = self.segmenter or SEGMENTERS[self.config.mask_source]

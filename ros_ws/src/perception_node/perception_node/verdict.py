@@ -10,14 +10,12 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from scene_graph import GraphStatus, SceneGraph, base_name
 
 from .blocks import Blocks, MeasuredBlock
 from .config import PerceptionConfig, StabilityLimits
 from .names import Names
-from .noise import color_noise
 from .places import Standing
 from .places.occlusion import Occlusion
 
@@ -64,9 +62,12 @@ def judge(
     return Verdict(GraphStatus.CONFIDENT)
 
 
-def grain(rgb: NDArray[np.uint8]) -> str:
-    """What is added to a refusal of a picture that is too grainy to rely on; else nothing."""
-    noise = color_noise(rgb)
+def grain(noise: float) -> str:
+    """What is added to a refusal of a picture that is too grainy to rely on; else nothing.
+
+    Args:
+        noise: standard deviation of its channels [0..255].
+    """
     if noise < GRAIN:
         return ""
     return (

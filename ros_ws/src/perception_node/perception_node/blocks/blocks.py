@@ -49,7 +49,9 @@ def measure(observation: Observation, segments: Segments) -> tuple[BlockSurface,
     depth, camera = observation.depth, observation.camera
     if depth is None or camera is None:
         return ()
-    return measure_blocks(segments, depth, camera, depth_noise(depth))
+    return measure_blocks(
+        segments, depth, camera, depth_noise(depth), observation.sure, observation.edge_doubt
+    )
 
 
 def centres(surfaces: tuple[BlockSurface, ...]) -> NDArray[np.float64] | None:

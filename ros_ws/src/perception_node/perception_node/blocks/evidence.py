@@ -20,6 +20,10 @@ Mask = NDArray[np.bool_]
 #: Least share of a block's pixels that must have depth, and least number.
 MIN_DEPTH_SHARE: Final = 0.3
 MIN_PIXELS: Final = 12
+#: Depths near edges are used where fewer others are known.
+MIN_SURE: Final = 40
+#: Standard deviation of a point of the outline: it is anywhere between two pixels [px].
+OUTLINE_NOISE: Final = 0.3
 #: Of a block at most so many depths are used, spread over all of its pixels.
 MAX_DEPTHS: Final = 200
 #: A neighbour nearer than this much, beyond the noise, is in front of the block [m].
@@ -43,6 +47,7 @@ class Evidence:
         shared: how many of them lie on one straight line along rows or columns, and so are off by
             the same fraction of a pixel, shape (o,).
         camera: that took the picture.
+        edge_noise: standard deviation of the points of the outline [px].
     """
 
     points: Array
@@ -51,6 +56,7 @@ class Evidence:
     outline: Array
     shared: Array
     camera: PinholeCamera
+    edge_noise: float = OUTLINE_NOISE
 
 
 def evidence_of(
@@ -60,6 +66,8 @@ def evidence_of(
     camera: PinholeCamera,
     noise: float,
     covers: Collection[int] = (),
+    sure: Mask | None = None,
+    edge_doubt: float = 0.0,
 ) -> Evidence:
     """What a picture says about a block.
 
@@ -68,6 +76,8 @@ def evidence_of(
             it does not end.
         depth: anything but a positive number means unknown, shape (height, width) [m].
         noise: of depth at 1 m; it grows with the square [m].
+        sure: pixels whose depth may be used, as far as there are enough, shape (height, width).
+        edge_doubt: by how much more than their size pixels of the outline may be displaced [px].
 
     Raises:
         BadImageError: if too little depth is known; the sentence goes on from the block's name.
@@ -86,6 +96,10 @@ def evidence_of(
     count, all_of_it = np.count_nonzero(known), np.count_nonzero(wide)
     if count < MIN_DEPTH_SHARE * all_of_it or count < MIN_PIXELS:
         raise BadImageError(f"only {count / all_of_it:.0%} of its pixels have depth")
+    if sure is not None:
+        reliable = known & _padded(sure, rows, columns, fill=False)
+        if np.count_nonzero(reliable) >= MIN_SURE:
+            known = reliable
     at = np.flatnonzero(known)
     at = at[:: -(-len(at) // MAX_DEPTHS)]
     inner = np.stack([at % wide.shape[1] + left - 1, at // wide.shape[1] + top - 1], axis=-1)
@@ -99,6 +113,7 @@ def evidence_of(
         outline=np.concatenate([points for points, _ in ends]) + (left - 1, top - 1),
         shared=np.concatenate([shared for _, shared in ends]),
         camera=camera,
+        edge_noise=float(np.hypot(OUTLINE_NOISE, edge_doubt)),
     )
 
 

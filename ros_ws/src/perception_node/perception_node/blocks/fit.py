@@ -24,8 +24,6 @@ from .models import Model, Seen
 
 Array = NDArray[np.float64]
 
-#: Standard deviation of a point of the outline: it is anywhere between two pixels [px].
-OUTLINE_NOISE: Final = 0.3
 #: Residuals beyond so many standard deviations count less than by their square.
 HUBER: Final = 2.0
 #: At first depths and outline count as if they were so much less exact, so that what is far off
@@ -143,7 +141,7 @@ class _Problem:
     @classmethod
     def of(cls, model: Model, priors: Sequence[Prior], evidence: Sequence[Evidence]) -> _Problem:
         camera = evidence[0].camera
-        rim = [1.0 / (OUTLINE_NOISE * np.sqrt(item.shared)) for item in evidence]
+        rim = [1.0 / (item.edge_noise * np.sqrt(item.shared)) for item in evidence]
         return cls(
             model,
             camera,

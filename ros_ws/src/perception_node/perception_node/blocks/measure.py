@@ -71,7 +71,12 @@ class BlockSurface:
 
 
 def measure_blocks(
-    segments: Segments, depth: NDArray[np.floating], camera: PinholeCamera, noise: float = 0.0
+    segments: Segments,
+    depth: NDArray[np.floating],
+    camera: PinholeCamera,
+    noise: float = 0.0,
+    sure: NDArray[np.bool_] | None = None,
+    edge_doubt: float = 0.0,
 ) -> tuple[BlockSurface, ...]:
     """What a picture says about each block, in the order of the segments.
 
@@ -79,6 +84,8 @@ def measure_blocks(
         depth: along the optical axis; anything but a positive number means unknown, shape (height,
             width) [m].
         noise: standard deviation of depth at 1 m; it grows with the square [m].
+        sure: where depth is as measured, shape (height, width); None: everywhere.
+        edge_doubt: see :class:`Observation` [px].
 
     Raises:
         BadImageError: if too little depth of a block is known; the sentence names its label.
@@ -88,7 +95,9 @@ def measure_blocks(
     evidence = []
     for segment, covers in zip(segments, above):
         try:
-            evidence.append(evidence_of(segment, segments, depth, camera, noise, covers))
+            evidence.append(
+                evidence_of(segment, segments, depth, camera, noise, covers, sure, edge_doubt)
+            )
         except BadImageError as error:
             raise BadImageError(
                 f"the depth of the object with label {segment.label} cannot be used: {error}; "

@@ -10,8 +10,6 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from perception_node.noise import color_noise
-
 Array = NDArray[np.float32]
 Mask = NDArray[np.bool_]
 Ids = NDArray[np.int32]
@@ -27,11 +25,6 @@ DEPTH_STEP: Final = 0.02
 #: brightest parts, and in standard deviations of the picture's noise.
 DARK: Final = 0.05
 DARK_NOISE: Final = 2.0
-#: Noise that is less than this does not matter [0..255].
-MIN_NOISE: Final = 1.0
-#: Of pixels as far away as this [px] those are averaged that differ by less than a few times the
-#: noise.
-SMOOTH: Final = (3, 6.0)
 
 
 @dataclass(frozen=True)
@@ -47,13 +40,14 @@ class Look:
     light: Array
 
     @classmethod
-    def of(cls, rgb: NDArray[np.uint8]) -> Look:
-        """The look of a picture, shape (h, w, 3): whatever its exposure, and with little noise."""
-        noise = color_noise(rgb)
+    def of(cls, rgb: NDArray[np.uint8], noise: float) -> Look:
+        """The look of a picture, whatever its exposure.
+
+        Args:
+            rgb: shape (h, w, 3).
+            noise: that its channels had, before it was smoothed [0..255].
+        """
         values: NDArray[Any] = rgb.astype(np.float32)
-        if noise > MIN_NOISE:
-            reach, width = SMOOTH
-            values = cv2.bilateralFilter(values, 2 * reach + 1, width * noise, float(reach))
         brightest = float(np.percentile(values.max(axis=-1), 95))
         values += np.float32(max(DARK * brightest, DARK_NOISE * noise, 1.0))
         total = values.sum(axis=-1)

@@ -11,15 +11,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from perception_node.alignment import smear_of
 from perception_node.errors import BadImageError
 from perception_node.observation import Observation
 
-from .facets import Facets, Look, alike, find_facets
+from .facets import DEPTH_STEP, Facets, Look, alike, find_facets
 from .region import Region, look_at
 from .segments import Segments
 from .unseen import check_all_seen
@@ -38,10 +40,14 @@ MAX_HEIGHT: Final = 0.09
 MIN_SIDE: Final = 0.014
 #: Facets of fewer pixels are noise, or the rim of another one.
 MIN_PIXELS: Final = 10
-#: Facets of fewer pixels than this have no normal to rely on.
+#: Facets of which fewer pixels have a sure depth have no normal to rely on,
 SLIVER: Final = 40
+#: and those of which fewer have one than this have to do with the others.
+FEW: Final = 6
 #: Facets of one block have hues nearer than this, see :class:`Look`.
 SAME_HUE: Final = 0.045
+#: and of a sliver, which often is a mixture, nearer than this.
+SLIVER_HUE: Final = 0.065
 #: Facets that lie in one plane and differ in brightness by more are of two blocks.
 SAME_LIGHT: Final = 0.12
 #: No two faces of one block differ in brightness by more (natural logarithm).
@@ -58,6 +64,8 @@ ONE_PLANE: Final = 0.92
 STRAY: Final = (1.0, 99.0)
 #: What hangs higher than this over what it should stand on does not stand [m].
 FLOATS: Final = 0.012
+#: Of a block often only the front is seen: it may reach so far beyond what is seen of it [m].
+UNSEEN: Final = 0.015
 
 
 def find_in_rgbd(
@@ -83,12 +91,12 @@ def find_in_rgbd(
             "mask_source to segmentation_topic"
         )
     labels = np.zeros(observation.rgb.shape[:2], np.uint16)
-    region = look_at(observation.rgb, observation.depth, observation.camera, volume)
+    region = look_at(observation, volume)
     if region is not None:
-        look = Look.of(region.rgb)
+        look = Look.of(region.rgb, observation.noise)
         if not may_miss:
             check_all_seen(region, look, labels.size)
-        labels[region.box] = _labels(region, look, volume)
+        labels[region.box] = _labels(region, look, volume, smear_of(observation.rgb.shape[1]))
     return Segments.from_labels(labels, source="camera/depth/image_raw")
 
 
@@ -98,6 +106,8 @@ class _Table:
 
     Attributes:
         pixels: how many.
+        sure: of how many the depth is sure.
+        thick: whether it is more than a strip, as there are where a camera mixes two colours.
         chroma, light: means, shapes (F, 3), (F,).
         centre, low, high: mean and about the ends of the points, shape (F, 3) [m].
         normal: of the plane through them, shape (F, 3).
@@ -105,6 +115,8 @@ class _Table:
     """
 
     pixels: NDArray[np.intp]
+    sure: NDArray[np.intp]
+    thick: Mask
     chroma: Array
     light: Array
     centre: Array
@@ -114,15 +126,15 @@ class _Table:
     level: Mask
 
 
-def _labels(region: Region, look: Look, volume: Volume) -> NDArray[np.uint16]:
+def _labels(region: Region, look: Look, volume: Volume, smear: int) -> NDArray[np.uint16]:
     """Labels of the blocks, 0 for all else, shape (h, w) of the region."""
     table_height = volume.floor
     with np.errstate(invalid="ignore"):
         candidates = region.inside & (region.points[..., 2] > table_height + MIN_HEIGHT)
     if not candidates.any():
         return np.zeros(candidates.shape, np.uint16)
-    facets = find_facets(candidates, look, region.filled)
-    table = _measure(facets, look, region)
+    facets = find_facets(candidates, look, region.depth)
+    table = _measure(facets, look, region, smear)
     groups = _group(facets, table)
     block = _which_are_blocks(facets, table, groups, region.points, volume)
     numbers = np.zeros(len(block), np.uint16)
@@ -132,7 +144,35 @@ def _labels(region: Region, look: Look, volume: Volume) -> NDArray[np.uint16]:
         foot = region.inside & (region.points[..., 2] <= table_height + MIN_HEIGHT)
         foot &= region.points[..., 2] > table_height - MAX_SUNK
     _grow_down(labels, foot, look)
+    _take_rims(labels, candidates, region.depth, smear)
     return labels
+
+
+def _take_rims(
+    labels: NDArray[np.uint16], candidates: Mask, depth: NDArray[np.float32], smear: int
+) -> None:
+    """Gives thin strips that look like nothing the label of the block that they are on.
+
+    Where a camera mixes the colours of two blocks, or of a block and what is behind it, there are
+    such strips between them.
+    """
+    bare = (candidates & (labels == 0)).view(np.uint8)
+    thick = cv2.morphologyEx(bare, cv2.MORPH_OPEN, np.ones((2 * smear + 1,) * 2, np.uint8))
+    strips = np.flatnonzero(bare > thick)
+    if len(strips) == 0 or not labels.any():
+        return
+    distance, number = cv2.distanceTransformWithLabels(
+        (labels == 0).view(np.uint8), cv2.DIST_L2, 3, labelType=cv2.DIST_LABEL_PIXEL
+    )
+    # The numbers of the pixels that have labels, which the distances are to.
+    owners = np.zeros(int(number.max()) + 1, np.intp)
+    blocks = np.flatnonzero(labels)
+    owners[number.ravel()[blocks]] = blocks
+    owner = owners[number.ravel()[strips]]
+    with np.errstate(invalid="ignore"):
+        on_it = np.abs(depth.ravel()[strips] - depth.ravel()[owner]) < DEPTH_STEP
+    mine = on_it & (distance.ravel()[strips] < smear + 1.5)
+    labels.reshape(-1)[strips[mine]] = labels.ravel()[owner[mine]]
 
 
 def _grow_down(labels: NDArray[np.uint16], foot: Mask, look: Look) -> None:
@@ -146,23 +186,26 @@ def _grow_down(labels: NDArray[np.uint16], foot: Mask, look: Look) -> None:
         labels[high][grows] = labels[low][grows]
 
 
-def _measure(facets: Facets, look: Look, region: Region) -> _Table:
+def _measure(facets: Facets, look: Look, region: Region, smear: int) -> _Table:
     used = facets.ids > 0
     ids, count = facets.ids[used], facets.count + 1
     pixels = np.bincount(ids, minlength=count)
-    many = np.maximum(pixels, 1)
+    # A face's points are those whose depth is sure, unless it has hardly any.
+    sure = region.sure[used]
+    many_sure = np.bincount(ids[sure], minlength=count)
+    counts = sure | (many_sure < FEW)[ids]
+    relied = np.where(many_sure < FEW, pixels, many_sure)
 
-    def mean(values: NDArray[np.floating]) -> Array:
-        flat = values[used].reshape(len(ids), -1)
-        sums = [np.bincount(ids, column, minlength=count) for column in flat.T]
-        return np.stack(sums, axis=-1) / many[:, None]
+    def mean(values: NDArray[np.floating], of: NDArray[np.int32], total: NDArray[np.intp]) -> Array:
+        flat = values.reshape(len(of), -1)
+        sums = [np.bincount(of, column, minlength=count) for column in flat.T]
+        return np.stack(sums, axis=-1) / np.maximum(total, 1)[:, None]
 
-    points = region.points.astype(np.float64)
-    centre = mean(points)
-    centred = points[used] - centre[ids]
+    points, of = region.points[used][counts].astype(np.float64), ids[counts]
+    centre = mean(points, of, relied)
+    centred = points - centre[of]
     products = centred[:, [0, 0, 0, 1, 1, 2]] * centred[:, [0, 1, 2, 1, 2, 2]]
-    second = np.stack([np.bincount(ids, column, minlength=count) for column in products.T], -1)
-    spread = second[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3) / many[:, None, None]
+    spread = mean(products, of, relied)[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3)
     normal = np.linalg.eigh(spread)[1][:, :, 0]
     # Of points that fill a face evenly these are its ends; a stray one does not move them far.
     reach = np.sqrt(3.0 * np.einsum("fii->fi", spread))
@@ -170,8 +213,10 @@ def _measure(facets: Facets, look: Look, region: Region) -> _Table:
     wide = np.sqrt(spread[:, 0, 0] + spread[:, 1, 1]) > LEVEL
     return _Table(
         pixels,
-        mean(look.chroma),
-        mean(look.light)[:, 0],
+        many_sure,
+        _thick(facets, smear),
+        mean(look.chroma[used], ids, pixels),
+        mean(look.light[used], ids, pixels)[:, 0],
         centre,
         centre - reach,
         centre + reach,
@@ -180,21 +225,36 @@ def _measure(facets: Facets, look: Look, region: Region) -> _Table:
     )
 
 
+def _thick(facets: Facets, smear: int) -> Mask:
+    """Whether facets have pixels that are surrounded by their own, shape (F,)."""
+    ids, around = facets.ids.astype(np.float32), np.ones((smear + 1,) * 2, np.uint8)
+    core = (cv2.erode(ids, around) == ids) & (cv2.dilate(ids, around) == ids)
+    thick = np.zeros(facets.count + 1, bool)
+    thick[facets.ids[core]] = True
+    return thick
+
+
 def _group(facets: Facets, table: _Table) -> NDArray[np.intp]:
     """The number of the group of each facet, from 1; facet 0 has group 0."""
     first, second, length = facets.borders.T
-    large = table.pixels >= MIN_PIXELS
+    large = table.thick & (table.pixels >= SLIVER)
     same = large[first] & large[second] & (length >= 2) & _can_be_one_block(table, first, second)
     groups = _joined(facets.count, first[same], second[same])
-    # Small ones belong to the large neighbour that they look like most.
+    # Small ones belong to the large neighbour that they look like most, those that have none to
+    # that of a small neighbour.
     difference = np.linalg.norm(table.chroma[first] - table.chroma[second], axis=1)
-    for border in np.argsort(difference):
-        a, b = first[border], second[border]
-        if large[a] == large[b] or difference[border] >= SAME_HUE:
-            continue
-        small, neighbour = (b, a) if large[a] else (a, b)
-        groups[small] = groups[neighbour]
-        large[small] = True
+    alike_first = np.argsort(difference)
+    alike_first = alike_first[difference[alike_first] < SLIVER_HUE]
+    taken = True
+    while taken:
+        taken = False
+        for border in alike_first[large[first[alike_first]] != large[second[alike_first]]]:
+            a, b = first[border], second[border]
+            if large[a] == large[b]:
+                continue
+            small, neighbour = (b, a) if large[a] else (a, b)
+            groups[small] = groups[neighbour]
+            large[small] = taken = True
     return groups
 
 
@@ -221,7 +281,7 @@ def _can_be_one_block(table: _Table, a: NDArray[np.int64], b: NDArray[np.int64])
     lower = np.minimum(table.high[a, 2] - table.low[a, 2], table.high[b, 2] - table.low[b, 2])
     beside = shared > SHARED_HEIGHT * lower
     # A sliver at an edge, where depth is often lost, has no plane that can be told.
-    sliver = beside & (np.minimum(table.pixels[a], table.pixels[b]) < SLIVER)
+    sliver = beside & (np.minimum(table.sure[a], table.sure[b]) < SLIVER)
     flat = np.abs(np.einsum("ni,ni->n", table.normal[a], table.normal[b])) > ONE_PLANE
     lit = np.abs(table.light[a] - table.light[b]) < MAX_CONTRAST
     return (
@@ -255,8 +315,10 @@ def _which_are_blocks(
         under = np.flatnonzero(stands)
         for group in np.flatnonzero(fits & ~stands):
             gap = np.abs(low[group, 2] - high[under, 2]) < FLOATS
-            over = ((low[group, :2] < high[under, :2]) & (high[group, :2] > low[under, :2])).all(1)
-            stands[group] = bool((gap & over).any())
+            over = (low[group, :2] < high[under, :2] + UNSEEN) & (
+                high[group, :2] > low[under, :2] - UNSEEN
+            )
+            stands[group] = bool((gap & over.all(axis=1)).any())
         if np.count_nonzero(stands) == len(under):
             break
     first, second = groups[facets.borders[:, 0]], groups[facets.borders[:, 1]]

@@ -50,9 +50,9 @@ def unseen(region: Region, look: Look, picture_area: int) -> Mask:
         picture_area: of the picture that the region is a part of [px].
     """
     everything = np.ones(region.depth.shape, bool)
-    facets = find_facets(everything, look, region.filled)
+    facets = find_facets(everything, look, region.depth)
     pixels = np.bincount(facets.ids.ravel(), minlength=facets.count + 1)
-    known = np.bincount(facets.ids[np.isfinite(region.filled)], minlength=facets.count + 1)
+    known = np.bincount(facets.ids[np.isfinite(region.depth)], minlength=facets.count + 1)
     bare = (pixels >= MIN_AREA * picture_area) & (known < MIN_DEPTH_SHARE * pixels)
     behind = bare & (pixels > MAX_PART * everything.size)
     for edge in (facets.ids[0], facets.ids[:, 0], facets.ids[:, -1]):

@@ -9,6 +9,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from perception_node.camera import PinholeCamera
+
 Array = NDArray[np.float64]
 
 #: Blocks are looked for as far as this beside the outer places [m].
@@ -64,3 +66,15 @@ class Volume:
         """All eight, shape (8, 3) [m]."""
         unit = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
         return self.low + unit * (self.high - self.low)
+
+    def seen_by(self, camera: PinholeCamera) -> tuple[slice, slice] | None:
+        """Rows and columns of the part of a picture that shows it; None if none does."""
+        pixels = camera.project(self.corners())
+        if not np.isfinite(pixels).all():  # the camera is in the volume: all of it may be seen
+            pixels = np.array([[0, 0], [camera.width - 1, camera.height - 1]], dtype=np.float64)
+        size = (camera.width, camera.height)
+        first = np.clip(np.floor(pixels.min(axis=0)).astype(int), 0, size)
+        last = np.clip(np.ceil(pixels.max(axis=0)).astype(int) + 1, 0, size)
+        if (last - first).min() < 3:
+            return None
+        return slice(int(first[1]), int(last[1])), slice(int(first[0]), int(last[0]))

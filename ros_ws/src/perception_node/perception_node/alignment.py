@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Edges as they are, where a lens smears colours and depth is a pixel or two beside them.
+
+No camera shows edges as steps: lens, sensor and compression smear them over a few pixels, and those
+of depth are ragged and displaced against colour's. Everything after this relies on a pixel being of
+one thing.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any, Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from .noise import color_noise, depth_noise
+from .observation import Observation
+
+Array = NDArray[np.float32]
+Mask = NDArray[np.bool_]
+
+#: So far edges of colour are smeared, and depth and colour displaced against one another, in a
+#: picture of this width; more in a wider one, see :func:`smear_of` [px].
+SMEAR: Final = (1, 256)
+#: A pixel without depth has that of the neighbour, as far as this beyond the smear [px], whose
+#: colour is most like it,
+FILL_REACH: Final = 1
+#: for so many times,
+FILLS: Final = 2
+#: but only if their channels differ by less than this altogether [0..255].
+FILL_LIKENESS: Final = 60.0
+#: Noise that is less than this does not matter [0..255].
+MIN_NOISE: Final = 0.5
+#: Of pixels as far away as this [px] those are averaged that differ by less than a few times the
+#: noise.
+SMOOTH: Final = (3, 6.0)
+#: Where inverse depths of neighbours bend by more than this share, or this often the noise, is an
+#: edge of depth.
+EDGE: Final = 0.02
+EDGE_NOISE: Final = 11.0
+#: Further than this from what its colour says, depth is that of the other side of an edge [m]; the
+#: table may be half as far away a few pixels on.
+STEP: Final = 0.05
+#: What shows that edges are not exact to a fraction of a pixel: how mixed their colours are, and
+#: the part of pixels whose depth is that of the other side; from so much on it adds so many pixels
+#: for each unit to the standard deviation of an edge, and this at most [px].
+MIXED: Final = (0.05, 4.0)
+MOVED: Final = (0.15, 10.0)
+MOST_DOUBT: Final = 0.6
+#: The depth of what has none.
+NOTHING: Final = np.float32(-1.0)
+#: A pixel whose neighbourhood spans less than this in every channel, or less than so many standard
+#: deviations of the noise, is no edge [0..255].
+FLAT: Final = 14.0
+FLAT_NOISE: Final = 6.0
+
+
+def aligned(observation: Observation, box: tuple[slice, slice]) -> Observation:
+    """The observation with steps for edges of colour, and edges of depth where those of colour are.
+
+    ``sure`` says where depth is as measured, and not near an edge.
+
+    Args:
+        box: the rows and columns that matter; the rest stays as it is.
+    """
+    noise = color_noise(observation.rgb)
+    part = smoothed(np.ascontiguousarray(observation.rgb[box]), noise)
+    smear = smear_of(observation.rgb.shape[1])
+    rgb = observation.rgb.copy()
+    rgb[box], mixed = sharpened(part, smear, noise)
+    part = rgb[box]
+    if observation.depth is None:
+        return replace(observation, rgb=rgb, noise=noise)
+    measured = observation.depth[box].astype(np.float32)
+    measured[~(measured > 0.0) | np.isinf(measured)] = np.nan
+    reach = smear + FILL_REACH
+    filled, moved, inner = _moved_to_colour(measured, part, smear)
+    depth, sure = observation.depth.astype(np.float32), np.ones(observation.depth.shape, bool)
+    if moved <= MOVED[0] and mixed <= MIXED[0]:
+        depth[box] = fill(measured, part, reach)
+        sure[box] = ~np.isnan(measured)
+    else:
+        depth[box] = fill(filled, part, reach)
+        sure[box] = inner
+    doubts = [
+        min(slope * max(0.0, share - begin), MOST_DOUBT)
+        for share, (begin, slope) in ((mixed, MIXED), (moved, MOVED))
+    ]
+    return replace(
+        observation,
+        rgb=rgb,
+        depth=depth,
+        sure=sure,
+        noise=noise,
+        edge_doubt=math.hypot(*doubts),
+    )
+
+
+def smoothed(rgb: NDArray[np.uint8], noise: float) -> NDArray[np.uint8]:
+    """The picture with less noise and the same edges.
+
+    Args:
+        rgb: shape (h, w, 3).
+        noise: standard deviation of its channels [0..255].
+    """
+    if noise <= MIN_NOISE:
+        return rgb
+    reach, many = SMOOTH
+    return np.asarray(cv2.bilateralFilter(rgb, 2 * reach + 1, many * noise, float(reach)), np.uint8)
+
+
+def _moved_to_colour(
+    measured: Array, rgb: NDArray[np.uint8], smear: int
+) -> tuple[Array, float, Mask]:
+    """Depth with its edges where those of colour are.
+
+    Args:
+        measured: NaN where depth is unknown, shape (h, w) [m].
+        rgb: with steps for edges, shape (h, w, 3).
+        smear: how far edges of both can be from one another [px].
+
+    Returns:
+        The depth; the part of pixels near its edges that were measured on their other side; which
+        pixels are not near an edge.
+    """
+    inner = without_edges(measured, smear)
+    # Of an area without depth a pixel may be, too; not of a gap at an edge.
+    gap = np.ones((2 * (smear + FILL_REACH) + 1,) * 2, np.uint8)
+    empty = cv2.erode(np.isnan(measured).view(np.uint8), gap)
+    filled = np.where(cv2.dilate(empty, gap) > 0, NOTHING, inner)
+    for _ in range(FILLS):
+        filled = fill(filled, rgb, smear + FILL_REACH)
+    known = ~np.isnan(measured)
+    both = np.isnan(inner) & known & ~np.isnan(filled)
+    differ = np.abs(measured[both] - filled[both]) > STEP
+    # A face so narrow that all of it is near an edge has nothing but what was measured there.
+    rest = np.isnan(filled) | (both & (np.abs(measured - filled) <= EDGE))
+    filled[rest] = measured[rest]
+    filled[filled == NOTHING] = np.nan
+    return filled, float(differ.mean()) if len(differ) else 0.0, ~np.isnan(inner)
+
+
+def smear_of(width: int) -> int:
+    """How far edges are smeared in a picture of this width [px]."""
+    pixels, usual = SMEAR
+    return max(1, round(pixels * width / usual))
+
+
+def disk(reach: int) -> list[tuple[int, int]]:
+    """Steps (down, right) to the pixels within a distance [px], the nearest ones first."""
+    span = range(-reach, reach + 1)
+    steps = [(i, j) for i in span for j in span if i * i + j * j <= (reach + 0.3) ** 2]
+    return sorted(steps, key=lambda step: step[0] ** 2 + step[1] ** 2)
+
+
+def sharpened(rgb: NDArray[np.uint8], reach: int, noise: float) -> tuple[NDArray[np.uint8], float]:
+    """Gives pixels of an edge the colour of the side that they look like.
+
+    Where a blurred edge is between two even colours, its pixels are mixtures: each becomes what the
+    evenest pixel near by is that it resembles.
+
+    Args:
+        rgb: shape (h, w, 3).
+        reach: how far an edge is smeared to each side [px].
+        noise: standard deviation of the channels [0..255].
+
+    Returns:
+        The picture, and how mixed its edges were: the mean change of an edge's pixel, as part of
+        the edge's height.
+    """
+    kernel = np.ones((3, 3), np.uint8)
+    span = (cv2.dilate(rgb, kernel) - cv2.erode(rgb, kernel)).max(axis=-1)
+    at = np.flatnonzero(span > max(FLAT, FLAT_NOISE * noise))
+    if len(at) == 0:
+        return rgb, 0.0
+    width = span.shape[1]
+    pad = ((reach, reach), (reach, reach))
+    wide = width + 2 * reach
+    at_wide = (at // width + reach) * wide + at % width + reach
+    channels = [np.pad(channel.astype(np.int16), pad, "edge").ravel() for channel in cv2.split(rgb)]
+    uneven = np.pad(span.astype(np.int16), pad, "edge").ravel()
+    own = [channel[at_wide] for channel in channels]
+    best = np.zeros(len(at), np.int32)
+    least: NDArray[Any] = np.full(len(at), 32_000, np.int16)
+    for down, right in disk(reach):
+        there = at_wide + (down * wide + right)
+        score = 2 * uneven[there]
+        for channel, mine in zip(channels, own):
+            score += np.abs(channel[there] - mine)
+        better = score < least
+        best[better], least[better] = there[better], score[better]
+    out = rgb.copy().reshape(-1, 3)
+    change = np.zeros(len(at), np.int16)
+    for index, (channel, mine) in enumerate(zip(channels, own)):
+        out[at, index] = channel[best]
+        np.maximum(change, np.abs(channel[best] - mine), out=change)
+    return out.reshape(rgb.shape), float(np.mean(change / span.ravel()[at]))
+
+
+def without_edges(depth: Array, band: int) -> Array:
+    """The depth without that near its edges, where it often is that of the other side.
+
+    Args:
+        depth: NaN where it is unknown, shape (h, w) [m].
+        band: how far depth and colour can be displaced against one another [px].
+    """
+    # On a plane the inverse of depth is linear in the picture.
+    inverse = np.nan_to_num(1.0 / depth)
+    bend = np.zeros(depth.shape, np.float32)
+    for part in (np.s_[:, :-2], np.s_[:, 1:-1], np.s_[:, 2:]), (np.s_[:-2], np.s_[1:-1], np.s_[2:]):
+        before, at, after = part
+        np.fmax(bend[at], np.abs(inverse[before] - 2.0 * inverse[at] + inverse[after]), bend[at])
+    limit = max(EDGE, EDGE_NOISE * depth_noise(depth))
+    with np.errstate(invalid="ignore"):
+        edge = (bend * depth > limit).view(np.uint8)
+    if band > 1:
+        around = np.ones((2 * band - 1, 2 * band - 1), np.uint8)
+        edge = np.asarray(cv2.dilate(edge, around), np.uint8)
+    return np.where(edge > 0, np.float32(np.nan), depth)
+
+
+def fill(depth: Array, rgb: NDArray[np.uint8], reach: int) -> Array:
+    """Gives pixels without depth that of the neighbour, near by, whose colour is most like theirs.
+
+    Args:
+        depth: NaN where it is unknown, shape (h, w) [m].
+        rgb: shape (h, w, 3).
+        reach: how far away the neighbour can be [px].
+    """
+    unknown = np.isnan(depth)
+    near = cv2.dilate((~unknown).view(np.uint8), np.ones((2 * reach + 1, 2 * reach + 1), np.uint8))
+    at = np.flatnonzero(unknown & (near > 0))
+    if len(at) == 0:
+        return depth
+    width = depth.shape[1]
+    wide = width + 2 * reach
+    at_wide = (at // width + reach) * wide + at % width + reach
+    depths = np.pad(depth, reach, constant_values=np.nan).ravel()
+    colors = [np.pad(channel.astype(np.int16), reach, "edge").ravel() for channel in cv2.split(rgb)]
+    own = [channel[at_wide] for channel in colors]
+    best: NDArray[np.float32] = np.full(len(at), np.nan, np.float32)
+    least = np.full(len(at), FILL_LIKENESS, np.float32)
+    for down, right in disk(reach)[1:]:
+        there = at_wide + (down * wide + right)
+        found = depths[there]
+        # Of two that look alike the nearer one.
+        difference = np.full(len(at), 2.0 * np.hypot(down, right), np.float32)
+        for channel, mine in zip(colors, own):
+            difference += np.abs(channel[there] - mine)
+        better = (difference < least) & ~np.isnan(found)
+        best[better], least[better] = found[better], difference[better]
+    filled = depth.copy()
+    filled.reshape(-1)[at] = best
+    return filled
