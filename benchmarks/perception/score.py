@@ -15,7 +15,8 @@ from results_file import Row, wilson_interval
 
 from perception.scenes import Drawn
 from perception.sets import PictureSet
-from perception_node import Observation, Perception, PerceptionConfig, PinholeCamera
+from perception.views import view_of
+from perception_node import Perception, PerceptionConfig
 from perception_node.visual_module.coordinates import Locator
 from scene_graph import GraphStatus, SceneGraph, SceneObject
 from sim_node import World, parse_scene, sense, true_scene_graph
@@ -61,18 +62,15 @@ def answer_of(
         with World(config) as own:
             return answer_of(drawn, item, locator, own)
     world.reset(drawn.layout, drawn.seed)
-    camera = world.config.camera
     frame = sense(world.render(), item.sensor, (drawn.seed, 0, 0))
     truth = true_scene_graph(world)
     feet = tuple(place.position_world for place in truth.places)
     perception = Perception(
         locator, PerceptionConfig(mask_source=item.mask_source, stack_positions=feet)
     )
-    pinhole = PinholeCamera(
-        camera.intrinsics, camera.world_from_optical, camera.width, camera.height
-    )
+    view = view_of(world.config.camera, frame)
     start = time.perf_counter()
-    seen = perception.perceive(Observation(frame.rgb, frame.labels, frame.depth, pinhole))
+    seen = perception.perceive(view.observation(frame.rgb, frame.labels, frame.depth))
     seconds = time.perf_counter() - start
     confident = seen.status is GraphStatus.CONFIDENT
     return Answer(

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
@@ -13,7 +13,13 @@ from sim_node import ColorConfig, DepthConfig, SegmentationConfig, SensorConfig
 
 #: What a real RGB-D camera does to depth: noise that grows with the square, lost edges.
 REAL_DEPTH: Final = DepthConfig(noise=0.0015, edge_dropout=0.5, edge_width=2)
-_VGA: Final = {"width": 640, "height": 480}
+_VGA: Final[Mapping[str, Any]] = {"width": 640, "height": 480}
+#: A lens as those of cameras that see 60 degrees across, nearer than usual, so that blocks are in
+#: more than the middle of the picture; barrel distortion moves its corners by 47 px, blocks by 7.
+_WIDE: Final[Mapping[str, Any]] = {
+    **_VGA, "vertical_fov": 0.8, "position": [1.1, 0.0, 0.38],
+    "distortion": [-0.28, 0.09, 0.001, -0.0005, 0.0],
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -62,12 +68,14 @@ def _with_label_error(kind: str, strength: int, count: int = 500) -> PictureSet:
     )
 
 
-def _as_cameras_are(name: str, what: str, **sensor: Any) -> PictureSet:
+def _as_cameras_are(
+    name: str, what: str, camera: Mapping[str, Any] = _VGA, **sensor: Any
+) -> PictureSet:
     """Six blocks in the plain world, by a camera with what real ones have, masks found."""
     return PictureSet(
         name,
-        f"6 objects, {what}, {_VGA['width']}x{_VGA['height']}",
-        plain(6, **_VGA),
+        f"6 objects, {what}, {camera['width']}x{camera['height']}",
+        plain(6, **camera),
         sensor=SensorConfig(**sensor),
         graph=0.97,
         accepted=0.97,
@@ -115,6 +123,7 @@ SETS: Final = (
     _as_cameras_are("real_camera", "blur, noisy colours, real depth 1 px beside them",
                     color=ColorConfig(blur=0.8, noise=2.5),
                     depth=replace(REAL_DEPTH, shift=(1.0, 0.0))),
+    _as_cameras_are("lens", f"through a wide lens, k1 = {_WIDE['distortion'][0]}", _WIDE),
     *(_with_label_error(kind, strength)
       for kind in ("eroded", "dilated", "shifted", "boundary") for strength in (1, 2)),
     _with_label_error("merged", 1),
