@@ -63,12 +63,15 @@ DEPTHS: Final[Mapping[str, DepthConfig]] = {
     **{f"depth step {step}": DepthConfig(step=step) for step in (0.001, 0.003, 0.01)},
     "depth step 0.001, fixed": DepthConfig(step=0.001, step_grows=False),
     "depth no_depth nan": DepthConfig(no_depth="nan"),
+    **{f"depth shift {right:g} px": DepthConfig(shift=(right, 0.0)) for right in (1.0, 2.0)},
     "depth in millimetres, read as metres": DepthConfig(encoding=MILLIMETRES),
     "depth as of an RGB-D camera": RGBD,
 }
 COLORS: Final[Mapping[str, ColorConfig]] = {
     **{f"color noise {sigma:g}": ColorConfig(noise=sigma) for sigma in (3.0, 10.0, 25.0)},
     **{f"color exposure {gain}": ColorConfig(exposure=gain) for gain in (0.2, 0.5, 1.5, 2.5)},
+    **{f"color blur {sigma}": ColorConfig(blur=sigma) for sigma in (0.5, 1.0)},
+    **{f"color jpeg {quality}": ColorConfig(jpeg_quality=quality) for quality in (95, 80)},
     "color cast warm": ColorConfig(cast=(1.15, 1.0, 0.75)),
     "color cast cold": ColorConfig(cast=(0.8, 1.0, 1.2)),
     "color cast strong": ColorConfig(cast=(1.4, 1.0, 0.5)),

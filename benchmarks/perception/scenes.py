@@ -40,10 +40,15 @@ class Drawn:
     scene: Mapping[str, Any] | None = None
 
 
-def plain(blocks: int) -> Callable[[int], Drawn]:
-    """Random states of so many blocks in the plain world."""
+def plain(blocks: int, **camera: Any) -> Callable[[int], Drawn]:
+    """Random states of so many blocks in the plain world.
+
+    Args:
+        camera: what is not as usual about it, by the keys of a scene file.
+    """
+    scene = {"cameras": [{"name": "camera", **camera}]} if camera else None
     return lambda number: Drawn(
-        FIRST_SEED + number, random_layout(FIRST_SEED + number, blocks), None
+        FIRST_SEED + number, random_layout(FIRST_SEED + number, blocks), scene
     )
 
 

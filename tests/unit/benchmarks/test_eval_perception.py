@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,8 +12,9 @@ import yaml
 from perception.scenes import CLUTTER_GAP
 from perception.score import Answer, refusals, rows_of
 from perception.sets import SETS, PictureSet, UnknownSetError, sets_named
+from perception.views import view_of
 
-from sim_node import parse_scene
+from sim_node import SceneConfig, World, parse_scene, random_layout
 
 
 @pytest.mark.parametrize("item", SETS, ids=lambda item: item.name)
@@ -36,6 +38,53 @@ def test_all_states_of_six_blocks_are_drawn_once() -> None:
     (six,) = sets_named("six")
     assert six.count == math.factorial(6) * math.comb(8, 2)
     assert len({six.draw(number).layout for number in range(six.count)}) == six.count
+
+
+@pytest.mark.parametrize("name", ["blurred", "jpeg", "shifted_depth", "real_camera"])
+def test_masks_are_found_in_pictures_as_cameras_take_them(name: str) -> None:
+    (item,) = sets_named(name)
+    assert item.mask_source == "rgbd" and not item.sensor.is_exact
+    scene = item.draw(0).scene
+    assert scene is not None
+    (camera,) = parse_scene(yaml.safe_dump(dict(scene))).cameras
+    assert (camera.width, camera.height) == (640, 480)
+    # All else is as in the plain world.
+    assert replace(camera, width=256, height=256) == SceneConfig().camera
+
+
+def middles(labels: np.ndarray) -> np.ndarray:
+    """Row and column of the middle of each block's pixels, shape (6, 2) [px]."""
+    return np.array([np.argwhere(labels == label).mean(axis=0) for label in range(1, 7)])
+
+
+def test_pictures_through_a_lens_are_interpreted_as_if_there_were_none() -> None:
+    (item,) = sets_named("lens")
+    scene = item.draw(0).scene
+    assert scene is not None
+    lens = parse_scene(yaml.safe_dump(dict(scene))).cameras[0]
+    assert lens.distortion[0] == -0.28
+    frames, pinhole = {}, replace(lens, distortion=(0.0,) * 5)
+    for camera in (lens, pinhole):
+        with World(SceneConfig(cameras=(camera,))) as world:
+            world.reset(random_layout(3, 6), 3)
+            frames[camera] = world.render()
+    bent, straight = frames[lens], frames[pinhole]
+    seen = view_of(lens, bent).observation(bent.rgb, bent.labels, bent.depth)
+    assert seen.labels is not None and seen.camera is not None
+    expected = middles(straight.labels)
+    assert np.abs(middles(bent.labels) - expected).max() > 3.0
+    assert np.abs(middles(seen.labels) - expected).max() < 1.5
+    assert np.abs(seen.camera.intrinsics - lens.intrinsics).max() < 1e-6
+    exact = view_of(pinhole, straight)
+    assert exact.rectification is None and (exact.camera.intrinsics == pinhole.intrinsics).all()
+
+
+def test_what_a_set_requires_stands_beside_its_rows() -> None:
+    (six, real) = sets_named("six,real_camera")
+    for item, bounds in ((six, (">= 0.998", ">= 0.95")), (real, (">= 0.97", ">= 0.97"))):
+        required = {row.metric: row.required for row in rows_of(item, [answer(True, True)])}
+        assert (required["graph right"], required["accepted and right"]) == bounds
+        assert required["accepted and wrong"] == "<= 0.001"
 
 
 def test_clutter_stands_clear_of_the_places() -> None:

@@ -21,8 +21,10 @@ from sim_node import (
 from sim_node.sensor.segmentation import ERRORS, KINDS
 
 ALL = SensorConfig(
-    depth=DepthConfig(noise=0.002, noise_correlation=1.0, edge_dropout=0.3, dropout=0.01),
-    color=ColorConfig(noise=4.0),
+    depth=DepthConfig(
+        noise=0.002, noise_correlation=1.0, edge_dropout=0.3, dropout=0.01, shift=(1.0, 0.0)
+    ),
+    color=ColorConfig(noise=4.0, blur=0.8, jpeg_quality=90),
     segmentation=SegmentationConfig("boundary", 2),
 )
 

@@ -25,6 +25,11 @@ REFUSED: list[tuple[str, Any, str]] = [
     ("depth.edge_step", 0.0, "below its minimum 0.001"),
     ("depth.dropout", -0.1, "below its minimum 0.0"),
     ("depth.step", 0.2, "above its maximum 0.1"),
+    ("depth.shift", [1.0], "has 1 numbers; it needs those to the right and down"),
+    ("depth.shift", [1.0, 0.0, 0.0], "has 3 numbers"),
+    ("depth.shift", [float("nan"), 0.0], "sensor.depth.shift = nan"),
+    ("depth.shift", [0.0, -101.0], "below its minimum -100"),
+    ("depth.shift", [float("inf"), 0.0], "above its maximum 100"),
     ("depth.no_depth", "-1", "sensor.depth.no_depth = '-1' is none of: zero, nan"),
     ("depth.encoding", "mono16", "'mono16' is none of: 32FC1, 16UC1"),
     ("color.noise", 101.0, "above its maximum 100.0"),
@@ -33,6 +38,11 @@ REFUSED: list[tuple[str, Any, str]] = [
     ("color.cast", [], "has 0 numbers"),
     ("color.cast", [1.0, 1.0, -1.0], "below its minimum 0.0"),
     ("color.cast", [1.0, float("nan"), 1.0], "sensor.color.cast = nan"),
+    ("color.blur", -0.5, "below its minimum 0.0"),
+    ("color.blur", float("nan"), "sensor.color.blur = nan"),
+    ("color.blur", 21.0, "above its maximum 20.0"),
+    ("color.jpeg_quality", -1, "below its minimum 0"),
+    ("color.jpeg_quality", 101, "sensor.color.jpeg_quality = 101 is above its maximum 100"),
     ("segmentation.kind", "blurred", "'blurred' is none of: exact, off, eroded, dilated"),
     ("segmentation.strength", -1, "below its minimum 0"),
     ("segmentation.strength", 101, "above its maximum 100"),
@@ -71,6 +81,7 @@ def test_every_setting_is_reached_by_the_parameter_of_its_name() -> None:
         "segmentation.kind": "split",
         "delivery.reliability": "best_effort",
         "color.cast": [1.0, 0.9, 0.8],
+        "depth.shift": [1.5, -2.0],
     }
     for name, spec in SPECS.items():
         if isinstance(spec.default, bool):

@@ -36,6 +36,8 @@ class DepthConfig:
         dropout: probability with which any pixel has no depth.
         step: of the quantisation, at 1 m where it grows [m]; 0: not quantised.
         step_grows: with z², as where disparities are whole multiples; else it is the same anywhere.
+        shift: how far right and down depth lies beside where it belongs in the colour picture, to
+            the nearest pixel: registration that is not perfect [px].
         no_depth: ZERO or NAN, what stands for no depth; in MILLIMETRES it is always 0.
         encoding: METRES or MILLIMETRES.
     """
@@ -48,13 +50,14 @@ class DepthConfig:
     dropout: float = 0.0
     step: float = 0.0
     step_grows: bool = True
+    shift: tuple[float, float] = (0.0, 0.0)
     no_depth: str = ZERO
     encoding: str = METRES
 
     @property
     def is_exact(self) -> bool:
         """Whether pictures stay what they are; their encoding is another matter."""
-        errors = (self.noise, self.edge_dropout, self.dropout, self.step)
+        errors = (self.noise, self.edge_dropout, self.dropout, self.step, *self.shift)
         return not any(errors) and self.no_depth == ZERO
 
 
@@ -66,11 +69,16 @@ class ColorConfig:
         noise: standard deviation, of each channel of each pixel by itself [0..255].
         exposure: factor of all values before they saturate.
         cast: further factors of red, green and blue.
+        blur: standard deviation of the Gaussian that lens and demosaicing smear light over, before
+            it saturates [px]; 0: none.
+        jpeg_quality: of the compression that pictures have gone through, 1..100; 0: none.
     """
 
     noise: float = 0.0
     exposure: float = 1.0
     cast: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    blur: float = 0.0
+    jpeg_quality: int = 0
 
     @property
     def is_exact(self) -> bool:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .config import NAN, DepthConfig
+from .outlines import moved
 
 if TYPE_CHECKING:
     from sim_node.frame import Frame
@@ -23,13 +24,17 @@ _GREATEST_MILLIMETRES: Final = 65535
 
 
 def with_depth_errors(frame: Frame, config: DepthConfig, rng: np.random.Generator) -> Frame:
-    """A frame as a depth camera sees it; its depth is 0, or NaN where asked for, for none."""
+    """A frame as a depth camera sees it; its depth is 0, or NaN where asked for, for none.
+
+    It errs in its own picture, and that is then laid beside the colours.
+    """
     lost_random, noise_random = rng.spawn(2)
     lost = drop_outs(frame.depth, config, lost_random)
     depth = noisy(frame.depth, config.noise, config.noise_correlation, noise_random)
     depth = quantised(depth, config.step, config.step_grows)
+    depth = shifted(np.where(lost, np.float32(0.0), depth), config.shift)
     nothing = np.nan if config.no_depth == NAN else 0.0
-    return replace(frame, depth=np.where(lost | (depth <= 0.0), np.float32(nothing), depth))
+    return replace(frame, depth=np.where(depth <= 0.0, np.float32(nothing), depth))
 
 
 def noisy(depth: Depth, noise: float, correlation: float, rng: np.random.Generator) -> Depth:
@@ -73,6 +78,18 @@ def quantised(depth: Depth, step: float, grows: bool) -> Depth:
         return (np.rint(wide / step) * step).astype(np.float32)
     disparity = np.rint(_inverse(wide) / step) * step
     return _inverse(disparity).astype(np.float32)
+
+
+def shifted(depth: Depth, shift: tuple[float, float]) -> Depth:
+    """Depths beside where they were, shape (h, w) [m]; what comes in from outside is none: 0.
+
+    Args:
+        depth: shape (h, w) [m]; 0: none.
+        shift: right and down; each pixel has the depth of the one nearest to where it comes from,
+            never a mixture of two, and of two equally near ones the farther [px].
+    """
+    right, down = (int(np.copysign(np.floor(abs(by) + 0.5), by)) for by in shift)
+    return moved(depth, down, right) if right or down else depth
 
 
 def drop_outs(depth: Depth, config: DepthConfig, rng: np.random.Generator) -> Mask:

@@ -6,7 +6,7 @@ Each is an :data:`.segmentation.Error`; distances are those of a chessboard, in 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import cv2
 import numpy as np
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from sim_node.frame import Frame
 
 Labels = NDArray[np.uint16]
+Pixels = TypeVar("Pixels", bound=NDArray[Any])
 
 _NEIGHBOURS: Final = np.ones((3, 3), np.uint8)
 
@@ -46,14 +47,14 @@ def shifted(frame: Frame, pixels: int, rng: np.random.Generator) -> Labels:
     return moved(frame.labels, *((along, across) if rng.integers(2) else (across, along)))
 
 
-def moved(labels: Labels, down: int, right: int) -> Labels:
-    """Labels moved by whole pixels; 0 where nothing comes from."""
-    height, width = labels.shape
-    result = np.zeros_like(labels)
+def moved(picture: Pixels, down: int, right: int) -> Pixels:
+    """Labels, or any picture, moved by whole pixels; 0 where nothing comes from."""
+    height, width = picture.shape[:2]
+    result = np.zeros_like(picture)
     rows, columns = max(0, height - abs(down)), max(0, width - abs(right))
     top, left = max(down, 0), max(right, 0)
     source_top, source_left = max(-down, 0), max(-right, 0)
-    result[top : top + rows, left : left + columns] = labels[
+    result[top : top + rows, left : left + columns] = picture[
         source_top : source_top + rows, source_left : source_left + columns
     ]
     return result

@@ -44,6 +44,13 @@ def _cast_problem(values: Sequence[float]) -> str:
     return f"sensor.color.cast has {len(values)} numbers; it needs those of red, green and blue"
 
 
+def _shift_problem(values: Sequence[float]) -> str:
+    """two numbers"""
+    if len(values) == 2:
+        return ""
+    return f"sensor.depth.shift has {len(values)} numbers; it needs those to the right and down"
+
+
 def _share(name: str, default: float, description: str) -> ParameterSpec:
     return ParameterSpec(name, default, f"{description} [0..1]", minimum=0.0, maximum=1.0)
 
@@ -109,6 +116,15 @@ SENSOR_PARAMETERS: Final = (
         "whether that step grows with the square of the distance, as that of disparities does",
     ),
     ParameterSpec(
+        "sensor.depth.shift",
+        list(_OFF.depth.shift),
+        "how far right and down depth lies beside where it belongs in the colour picture, to the "
+        "nearest pixel; what comes in from outside has no depth [px]",
+        minimum=-100.0,
+        maximum=100.0,
+        check=_shift_problem,
+    ),
+    ParameterSpec(
         "sensor.depth.no_depth",
         ZERO,
         "what a pixel without depth holds in 32FC1; in 16UC1 it is always 0",
@@ -141,6 +157,22 @@ SENSOR_PARAMETERS: Final = (
         minimum=0.0,
         maximum=20.0,
         check=_cast_problem,
+    ),
+    ParameterSpec(
+        "sensor.color.blur",
+        _OFF.color.blur,
+        "standard deviation of the Gaussian over which lens and demosaicing smear light, before it "
+        "saturates and noise is added; 0: none [px]",
+        minimum=0.0,
+        maximum=20.0,
+    ),
+    ParameterSpec(
+        "sensor.color.jpeg_quality",
+        _OFF.color.jpeg_quality,
+        "quality of the JPEG that a picture has been, 1..100, with noise and all (by OpenCV, "
+        "colours 4:2:0); 0: it has been none",
+        minimum=0,
+        maximum=100,
     ),
     ParameterSpec(
         "sensor.segmentation.kind",
@@ -207,12 +239,13 @@ def sensor_from_parameters(values: Mapping[str, Any]) -> SensorConfig:
             if name.startswith(prefix)
         }
 
-    color, delivery = of("color"), of("delivery")
+    depth, color, delivery = of("depth"), of("color"), of("delivery")
+    right, down = depth.pop("shift")
     red, green, blue = color.pop("cast")
     reliable = delivery.pop("reliability") == _RELIABLE
     return SensorConfig(
         seed=values["sensor.seed"],
-        depth=DepthConfig(**of("depth")),
+        depth=DepthConfig(**depth, shift=(right, down)),
         color=ColorConfig(**color, cast=(red, green, blue)),
         segmentation=SegmentationConfig(**of("segmentation")),
         delivery=DeliveryConfig(**delivery, reliable=reliable),
