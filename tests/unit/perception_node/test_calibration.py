@@ -197,3 +197,13 @@ def test_a_pose_that_cannot_be_is_refused() -> None:
     calibration.place(FramePose("base", "optical", (0.0,) * 3, (0.0, 0.0, 0.0, 0.5)))
     with pytest.raises(BadImageError, match="unit quaternion"):
         calibration.view(lens(), 320, 240)
+
+
+def test_labels_are_those_of_the_nearest_pixel() -> None:
+    view = calibrated().view(lens(d=LENSES["plumb_bob"], p=flat(P)), 320, 240)
+    numbers = np.arange(240 * 320, dtype=np.int32).reshape(240, 320)
+    pixels, seen = seen_at(view)
+    assert view.rectification is not None
+    found = view.rectification.labels(numbers)[tuple(pixels[:, ::-1].astype(int).T)]
+    off = np.stack([found % 320, found // 320], axis=-1) - seen
+    assert np.abs(off).max() < 0.5 + 1 / 32

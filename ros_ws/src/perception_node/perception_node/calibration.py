@@ -97,21 +97,33 @@ class Rectification:
     """Makes of a picture with distortion what a pinhole camera would have taken.
 
     Attributes:
-        maps: of OpenCV, from the pixels of the new picture into the old one.
+        between: maps of OpenCV, from the pixels of the new picture to where between pixels of the
+            old one they were.
+        nearest: the same, to the nearest pixel.
     """
 
-    maps: tuple[Pixels, Pixels]
+    between: tuple[Pixels, Pixels]
+    nearest: tuple[Pixels, Pixels]
+
+    @classmethod
+    def of(cls, columns: Pixels, rows: Pixels) -> Rectification:
+        """From maps of OpenCV in floating point."""
+        # With the maps for linear interpolation OpenCV rounds a tenth of a pixel up.
+        return cls(
+            cv2.convertMaps(columns, rows, cv2.CV_16SC2),
+            cv2.convertMaps(columns, rows, cv2.CV_16SC2, nninterpolation=True),
+        )
 
     def color(self, rgb: Pixels) -> Pixels:
         """Of a color image; what the lens did not show is black."""
-        return cv2.remap(rgb, *self.maps, cv2.INTER_LINEAR)
+        return cv2.remap(rgb, *self.between, cv2.INTER_LINEAR)
 
     def labels(self, labels: Pixels) -> Pixels:
         """Of labels: that of the nearest pixel; 0 where the lens showed nothing."""
         kind = labels.dtype
         # OpenCV has no 32-bit integers here; labels are as exact in floating point.
         kept = labels if kind in (np.uint16, np.uint8) else labels.astype(np.float32)
-        return cv2.remap(kept, *self.maps, cv2.INTER_NEAREST).astype(kind, copy=False)
+        return cv2.remap(kept, *self.nearest, cv2.INTER_NEAREST).astype(kind, copy=False)
 
     def depth(self, depth: Pixels) -> Pixels:
         """Of depths [m]; 0 where the lens showed nothing.
@@ -126,9 +138,9 @@ class Rectification:
             np.abs(cv2.filter2D(inverse, cv2.CV_32F, _BEND.T)),
         )
         plane = (known & (bend < _PLANE * inverse)).astype(np.float32)
-        amid = cv2.remap(plane, *self.maps, cv2.INTER_LINEAR) > 1.0 - 1e-4
-        seen = cv2.remap(depth, *self.maps, cv2.INTER_NEAREST)
-        np.divide(1.0, cv2.remap(inverse, *self.maps, cv2.INTER_LINEAR), out=seen, where=amid)
+        amid = cv2.remap(plane, *self.between, cv2.INTER_LINEAR) > 1.0 - 1e-4
+        seen = cv2.remap(depth, *self.nearest, cv2.INTER_NEAREST)
+        np.divide(1.0, cv2.remap(inverse, *self.between, cv2.INTER_LINEAR), out=seen, where=amid)
         return seen
 
 
@@ -227,7 +239,7 @@ class Calibration:
         if not distorted or self._rectified:
             return View(camera)
         taker = PinholeCamera(raw, pose, full_width, full_height).resized(width, height)
-        return View(camera, Rectification(_maps(lens, taker.intrinsics, camera)))
+        return View(camera, _rectification(lens, taker.intrinsics, camera))
 
     def _pose(self, frame: str) -> Array:
         """Of the optical frame, shape (4, 4) [m]."""
@@ -261,7 +273,7 @@ class Calibration:
         return pose
 
 
-def _maps(lens: LensModel, intrinsics: Array, camera: PinholeCamera) -> tuple[Pixels, Pixels]:
+def _rectification(lens: LensModel, intrinsics: Array, camera: PinholeCamera) -> Rectification:
     """From raw pictures with these intrinsics to those of a camera without distortion."""
     model = lens.distortion_model or "plumb_bob"
     counts = _COEFFICIENTS.get(model)
@@ -281,7 +293,7 @@ def _maps(lens: LensModel, intrinsics: Array, camera: PinholeCamera) -> tuple[Pi
         rotation = np.eye(3)
     size = (camera.width, camera.height)
     make: Any = cv2.fisheye if model == "equidistant" else cv2
-    maps: tuple[Pixels, Pixels] = make.initUndistortRectifyMap(
-        intrinsics, coefficients, rotation, camera.intrinsics, size, cv2.CV_16SC2
+    maps = make.initUndistortRectifyMap(
+        intrinsics, coefficients, rotation, camera.intrinsics, size, cv2.CV_32FC1
     )
-    return maps
+    return Rectification.of(*maps)
