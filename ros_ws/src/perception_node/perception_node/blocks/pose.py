@@ -28,12 +28,15 @@ CONTACT: Final = 5e-4
 STANDS: Final = (3.0, 0.004)
 #: Sizes known to this standard deviation say whether blocks may be cubes [m].
 TELLS: Final = 0.0025
-#: Sizes that are known better than SHARP agree within so many standard deviations and this much
-#: more [m]. Others are those of edges that are hardly seen, and less certain than they state: each
-#: may be off by so many standard deviations, and all of a scene by so many as a root mean square.
+#: Sizes agree within this much [m], and beyond that within so many standard deviations each, and so
+#: many as a root mean square of many. Those that are not known better than SHARP are of edges that
+#: are hardly seen, and less certain than they state.
+ALIKE: Final = 0.0005
 SHARP: Final = 0.001
-AGREES: Final = (2.5, 0.0005)
+AGREES: Final = (2.5, 0.8)
 HARDLY_SEEN: Final = (4.5, 3.0)
+#: A root mean square of as few values may be √2 times as large as one of many.
+FEW: Final = 5
 #: Standard deviation of the edges of what is taken for a cube, and for one of equal cubes [m].
 CUBE: Final = 8e-4
 EQUAL: Final = 3e-4
@@ -155,18 +158,25 @@ def _mean(values: _Values) -> float | None:
 
 def _agree(groups: Sequence[tuple[_Values, float | None]]) -> bool:
     """Whether the values of each group can be its mean."""
-    off = []
+    hardly_seen: list[float] = []
     for values, mean in groups:
         if mean is None:
             return False
         found, doubt = np.array(values).T
-        beyond = np.maximum(np.abs(found - mean) - AGREES[1], 0.0) / doubt
+        beyond = np.maximum(np.abs(found - mean) - ALIKE, 0.0) / doubt
         sharp = doubt < SHARP
-        if (beyond[sharp] > AGREES[0]).any():
+        few = float(np.sqrt(1.0 + FEW / max(1, np.count_nonzero(sharp))))
+        if not _within(beyond[sharp], AGREES[0], AGREES[1] * few):
             return False
-        off += list(beyond[~sharp])
-    most, together = HARDLY_SEEN
-    return not off or (max(off) <= most and float(np.sqrt(np.mean(np.square(off)))) <= together)
+        hardly_seen += list(beyond[~sharp])
+    return _within(np.array(hardly_seen), *HARDLY_SEEN)
+
+
+def _within(beyond: Array, most: float, together: float) -> bool:
+    """Whether so many standard deviations each, and as a root mean square, are not too many."""
+    if len(beyond) == 0:
+        return True
+    return bool(beyond.max() <= most and np.sqrt(np.mean(beyond**2)) <= together)
 
 
 def _posed(surface: BlockSurface, estimate: _Estimate) -> MeasuredBlock:
