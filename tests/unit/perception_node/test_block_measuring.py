@@ -2,6 +2,7 @@
 """Blocks are measured to about a millimetre, or say how badly; ray-cast solids are the oracle."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -72,7 +73,7 @@ def test_cubes_of_mixed_sizes_are_measured_to_two_millimetres(
     assert max(errors_of(blocks, solids)) < 2.0
     # Where edges differ by a pixel or less, cubes may be taken for equal ones.
     sizes = sorted({edge for edge, _ in cubes})
-    alike = any(below < above < below + 0.004 for below, above in zip(sizes, sizes[1:]))
+    alike = any(below < above < below + 0.004 for below, above in pairwise(sizes))
     for block, (edge, _) in zip(blocks, cubes):
         assert block.pose.size == pytest.approx((edge,) * 3, abs=0.003 if alike else 0.002)
 

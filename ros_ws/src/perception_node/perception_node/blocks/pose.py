@@ -165,7 +165,7 @@ def _agree(groups: Sequence[tuple[_Values, float | None]]) -> bool:
         found, doubt = np.array(values).T
         beyond = np.maximum(np.abs(found - mean) - ALIKE, 0.0) / doubt
         sharp = doubt < SHARP
-        few = float(np.sqrt(1.0 + FEW / max(1, np.count_nonzero(sharp))))
+        few = float(np.sqrt(1.0 + FEW / max(1, int(sharp.sum()))))
         if not _within(beyond[sharp], AGREES[0], AGREES[1] * few):
             return False
         hardly_seen += list(beyond[~sharp])
