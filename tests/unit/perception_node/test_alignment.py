@@ -128,6 +128,8 @@ def test_an_exact_picture_of_blocks_is_not_taken_for_a_blurred_one(world: World)
     smeared = blurred(observation.rgb, 1.0)
     soft = aligned(replace(observation, rgb=smeared), box)
     assert exact.edge_doubt == 0.0 < soft.edge_doubt
+    # A line of one pixel, as the top of a block at the camera's height, stays what it is.
+    assert np.array_equal(exact.rgb, observation.rgb)
 
 
 def test_smears_grow_with_the_picture() -> None:

@@ -69,9 +69,11 @@ def aligned(observation: Observation, box: tuple[slice, slice]) -> Observation:
     noise = color_noise(observation.rgb)
     part = smoothed(np.ascontiguousarray(observation.rgb[box]), noise)
     smear = smear_of(observation.rgb.shape[1])
+    sharp, mixed = sharpened(part, smear, noise)
+    if mixed > MIXED[0]:  # else a thin line would be taken for an edge that is smeared
+        part = sharp
     rgb = observation.rgb.copy()
-    rgb[box], mixed = sharpened(part, smear, noise)
-    part = rgb[box]
+    rgb[box] = part
     if observation.depth is None:
         return replace(observation, rgb=rgb, noise=noise)
     measured = observation.depth[box].astype(np.float32)
