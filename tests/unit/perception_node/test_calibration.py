@@ -168,6 +168,8 @@ def test_a_moved_camera_is_seen_where_it_is_now() -> None:
     calibration = calibrated()
     before = calibration.view(lens(), 320, 240)
     assert calibration.view(lens(), 320, 240) is before
+    calibration.place(pose("base", "optical", (0.4, -0.2, 0.9)))
+    assert calibration.view(lens(), 320, 240) is before
     calibration.place(pose("base", "optical", (0.0, 0.0, 1.0)))
     assert calibration.view(lens(), 320, 240).camera.position_world == pytest.approx([0, 0, 1])
     assert calibration.view(lens(width=640, height=480), 320, 240).camera.intrinsics[

@@ -185,13 +185,16 @@ class Calibration:
 
     def place(self, extrinsics: FramePose) -> None:
         """Where the camera is: the pose of its optical frame."""
-        self._extrinsics = extrinsics
-        self._known = None
+        if extrinsics != self._extrinsics:  # many publish it again and again
+            self._extrinsics = extrinsics
+            self._known = None
 
     def add_frames(self, frames: Iterable[FramePose]) -> None:
         """Frames that do not move, as on tf_static."""
-        self._frames |= {frame.child: frame for frame in frames}
-        self._known = None
+        known = self._frames | {frame.child: frame for frame in frames}
+        if known != self._frames:
+            self._frames = known
+            self._known = None
 
     @property
     def placed(self) -> bool:
