@@ -173,8 +173,12 @@ class Eyes:
         return self.wait_for(lambda: self._graphs >= wanted, timeout)
 
     def nodes(self, name: str) -> int:
-        """How many nodes of a name there are."""
-        return self._node.get_node_names().count(name)
+        """How many nodes of a name there are.
+
+        By a service that every node has: the names of nodes come by a topic of their own, and those
+        of a node that is started again at once are now and then not heard of by who is there long.
+        """
+        return self._node.count_services(f"/{name}/get_parameters")
 
     def _on_truth(self, message: SceneGraphMsg) -> None:
         with self._news:
