@@ -20,6 +20,7 @@ from scene_graph import Stacks
 from sim_node.layouts import format_layout
 from tamp_bringup.processes import NODES, NodeProcesses
 
+GROUND_TRUTH: Final = "sim/ground_truth"
 #: How long a node may take until it is there [s].
 START_SECONDS: Final = 60.0
 
@@ -57,8 +58,16 @@ class Setting:
         )
 
     def start_beside(self, *nodes: str) -> None:
-        """Starts nodes a second time, and waits until they are seen and heard."""
-        second = NodeProcesses(self.folder / "logs_second", self.parameters, nodes)
+        """Starts nodes a second time, and waits until they are seen and heard.
+
+        The ground truth of a second simulator goes elsewhere: what is judged is the first one's.
+        """
+        second = NodeProcesses(
+            self.folder / "logs_second",
+            self.parameters,
+            nodes,
+            remappings={"sim_node": {GROUND_TRUTH: f"second/{GROUND_TRUTH}"}},
+        )
         self.others.append(second)
         second.__enter__()
         self.wait_for_nodes(*nodes, count=2)

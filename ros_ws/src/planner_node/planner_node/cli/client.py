@@ -33,7 +33,7 @@ from tamp_runtime.node_thread import NodeThread
 from tamp_runtime.service_call import arrival, ask
 from unique_identifier_msgs.msg import UUID
 
-from .unavailable import UNKNOWN_GOAL, WHAT_TO_DO, PlannerUnavailableError, no_answer
+from .unavailable import WHAT_TO_DO, PlannerUnavailableError, no_answer, unknown_goal
 
 #: The planner counts as gone when DDS has not seen it for this long [s].
 GONE_SECONDS: Final = 2.0
@@ -176,7 +176,7 @@ class PlannerClient:
         if result.done() or code in (CancelGoal.Response.ERROR_NONE, _TERMINATED):
             return
         if code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
-            raise PlannerUnavailableError(UNKNOWN_GOAL)
+            raise unknown_goal(self._node.count_services(self._send_goal))
         raise PlannerUnavailableError("planner_node refused to cancel the goal; its log says why")
 
     def withdraw(self, timeout: float = 2.0) -> bool:
@@ -219,7 +219,7 @@ class PlannerClient:
             arrived.wait(0.1)
         response = future.result()
         if response.status == GoalStatus.STATUS_UNKNOWN:
-            raise PlannerUnavailableError(UNKNOWN_GOAL)
+            raise unknown_goal(self._node.count_services(self._send_goal))
         return response.result
 
     def close(self) -> None:

@@ -11,11 +11,22 @@ WHAT_TO_DO: Final = (
     "'ros2 run planner_node stop', or look at the scene and ask again"
 )
 
-UNKNOWN_GOAL: Final = f"planner_node does not know the goal; it was started anew. {WHAT_TO_DO}"
 
 
 class PlannerUnavailableError(RuntimeError):
     """planner_node does not answer; the message says what to do about it."""
+
+
+def unknown_goal(servers: int) -> PlannerUnavailableError:
+    """The error of a planner that does not know what it was asked for.
+
+    Args:
+        servers: of the action; one that was killed is still there for some seconds.
+    """
+    two = ", or there are two of planner_node in this domain" if servers > 1 else ""
+    return PlannerUnavailableError(
+        f"planner_node does not know the goal; it was started anew{two}. {WHAT_TO_DO}"
+    )
 
 
 def no_answer(seconds: float) -> PlannerUnavailableError:
