@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``make bench-planner``: how quickly plans are found, and whether they are shortest.
+"""``make bench-planner``: how quickly plans are found, whether they are shortest, and goals read.
 
 Random states and goals (seeds from 1000). Lengths and times beside Fast Downward's (A* with
 LM-cut), in one run and in turns, where ``FD=`` names a virtual environment with
@@ -19,7 +19,9 @@ import sys
 import time
 from pathlib import Path
 
+from goal_sentences import sentence_rows
 from planner_peer import FastDownward
+from refused_goals import refused_rows
 from results_file import Row, print_rows, quick, write_result
 from tqdm import tqdm
 
@@ -163,6 +165,7 @@ def main() -> None:
     for blocks, places, *_ in OPTIMAL:
         make_plan(*random_problem(blocks, places, 0, complete=True), MAX_EXPANSIONS)
     rows = [*optimal_rows(count), memory_row(count), *bounded_rows(3 if quick() else 20)]
+    rows += sentence_rows(30 if quick() else 300) + refused_rows(40 if quick() else 500)
     if peer is None:
         print("Fast Downward is left out; FD=FOLDER names an environment with up-fast-downward")
     else:

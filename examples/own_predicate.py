@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A predicate of your own: ``beside``, for blocks in neighbouring stacks.
+"""A predicate of your own: ``level``, for blocks at the same height in different stacks.
 
 One entry of ``scene_graph.PREDICATES`` is all: goals are parsed with its phrases, the search tests
 states by its meaning, and people are told its first phrase. In the project itself the entry stands
@@ -16,15 +16,16 @@ from scene_graph import PREDICATES, Predicate, Spot, format_stacks
 STATE = (("red_box", "green_box"), (), ("blue_box", "yellow_box"))
 
 
-def beside(subject: Spot, object_: Spot) -> bool:
-    """In neighbouring stacks, at the same level."""
-    return abs(subject.stack - object_.stack) == 1 and subject.level == object_.level
+def level(subject: Spot, object_: Spot) -> bool:
+    """At the same height in different stacks."""
+    return subject.stack != object_.stack and subject.level == object_.level
 
 
 def main() -> None:
-    PREDICATES.add(Predicate("beside", beside, phrases=("beside", "next to"), takes_place=False))
+    phrases = ("level with", "as high as")
+    PREDICATES.add(Predicate("level", level, phrases=phrases, takes_place=False))
     names = [name for stack in STATE for name in stack]
-    goal = resolve_goal(parse_goal("red next to blue, green beside yellow"), names)
+    goal = resolve_goal(parse_goal("red level with yellow, green above blue"), names)
     plan = make_plan(STATE, goal)
     print(f"{len(plan.moves)} moves to '{goal}'")
     for state in plan.states:

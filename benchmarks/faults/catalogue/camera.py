@@ -199,7 +199,7 @@ FAULTS = (
     Fault(
         "colours-exchanged", "red and blue are exchanged: bgr8 that is called rgb8",
         Damaged((IMAGE,), Change(p.pixels(p.red_and_blue_exchanged))), CAMERA_PHASES,
-        (("unknown", "cannot be seen", "not seen", "no "),),
+        (("unknown", "cannot be seen", "not seen", "no ", "exchanged"),),
         unseen="blocks of exchanged colours are other blocks to every camera",
     ),
 )  # fmt: skip

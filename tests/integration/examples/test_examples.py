@@ -18,7 +18,7 @@ EXPECTED = {
     "graph_in_process": "the camera confirms 'red_box on green_box'",
     "optimise_a_plan": "plotted into",
     "own_constraint": "room for red_box below the shelf is violated",
-    "own_predicate": "3 moves to 'red_box beside blue_box, green_box beside yellow_box'",
+    "own_predicate": "2 moves to 'red_box level with yellow_box, green_box above blue_box'",
     "own_segmenter": "CONFIDENT",
     "perceive_a_picture": "drawn into",
     "plan_from_a_scene": "4 moves to 'red_box on blue_box, green_box left of red_box'",

@@ -64,11 +64,11 @@ def test_a_second_plan_is_refused_and_a_plan_without_moves_stops_the_first(bench
 def test_what_cannot_be_read_is_refused_with_its_name(bench: Bench) -> None:
     bench.start()
     plan = plan_message("a", (0, 1))
-    plan.initial.relations[0].predicate = "beside"
+    plan.initial.relations[0].predicate = "touches"
     bench.planner.ask(plan)
     end = bench.end("a")
     assert (end.state, end.reason) == (MotionStatus.FAILED, MotionStatus.INVALID_PLAN)
-    assert "beside" in end.message
+    assert "touches" in end.message
     assert not bench.arm.trajectories
 
 

@@ -119,7 +119,7 @@ def test_without_a_scene_graph_there_is_no_plan(make_bench: Any) -> None:
             {"status": SceneGraph.OCCLUDED, "message": "the arm hides stack1"},
             "the arm hides stack1",
         ),
-        ({"relations": [Relation(predicate="beside")]}, "unknown predicate 'beside'"),
+        ({"relations": [Relation(predicate="touches")]}, "unknown predicate 'touches'"),
     ],
 )
 def test_a_scene_that_cannot_be_trusted_is_not_planned_on(

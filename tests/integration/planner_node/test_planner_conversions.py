@@ -81,7 +81,7 @@ def test_a_sighting_keeps_what_perception_says() -> None:
 
 
 @pytest.mark.parametrize(
-    "fields", [{"status": 200}, {"predicate": "beside"}], ids=["status", "predicate"]
+    "fields", [{"status": 200}, {"predicate": "touches"}], ids=["status", "predicate"]
 )
 def test_a_message_that_cannot_be_read_is_a_defect(fields: dict[str, Any]) -> None:
     message = scene_message(START, STAMP)

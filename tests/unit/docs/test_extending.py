@@ -58,5 +58,5 @@ def test_the_code_of_the_page_runs() -> None:
         for block in blocks:
             exec(block, names)
     finally:
-        PREDICATES.remove("beside")
+        PREDICATES.remove("level")
         ALGORITHMS.pop("depth_first", None)

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Blocks are named by their colours whatever the light, and equal ones are numbered."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from perception_node.names import color_names, mean_colors, unique_names
+from perception_node.names import color_names, mean_colors, name_blocks, unique_names
 from scene_graph import BASIC_COLORS, COLORS
 
 NAMES = BASIC_COLORS
@@ -42,6 +45,21 @@ def test_a_few_foreign_pixels_do_not_change_a_colour() -> None:
     rgb[:3] = (255, 255, 255)
     colors = mean_colors(rgb, [np.ones((20, 20), bool)])
     assert color_names(colors) == ("red",)
+
+
+def test_exchanged_channels_are_told() -> None:
+    colors = [COLORS[name] for name in ("orange", "yellow", "green", "brown")]
+    picture = np.repeat(np.array([colors]) * 200, 10, axis=0).repeat(10, axis=1).astype(np.uint8)
+    segments: Any = []
+    for index in range(len(colors)):
+        part = np.zeros(picture.shape[:2], bool)
+        part[:, 10 * index : 10 * index + 10] = True
+        segments.append(SimpleNamespace(part=part))
+    stacks = [[0], [1], [2, 3]]
+    assert name_blocks(picture, segments, ["box"] * 4, stacks).doubt == ""
+    exchanged = name_blocks(picture[..., ::-1], segments, ["box"] * 4, stacks)
+    assert "with red and blue exchanged" in exchanged.doubt
+    assert "encoding" in exchanged.doubt
 
 
 def test_equal_blocks_are_numbered_from_the_left_and_the_bottom() -> None:

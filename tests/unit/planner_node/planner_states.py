@@ -56,6 +56,12 @@ def random_state(names: tuple[str, ...], stack_count: int, rng: random.Random) -
 
 def relation_holds(state: State, relation: Relation) -> bool:
     """The meaning of a relation, told by walking through the stacks."""
+    there = {f"stack{index}" for index in range(len(state))}.union(*state)
+    if not {relation.subject, relation.object} <= there:
+        return False
+    if relation.predicate.startswith("not_"):
+        positive = Relation(relation.subject, relation.predicate[4:], relation.object)
+        return not relation_holds(state, positive)
     subject, predicate, object_ = relation.subject, relation.predicate, relation.object
     for index, stack in enumerate(state):
         column = [f"stack{index}", *stack]
@@ -66,6 +72,9 @@ def relation_holds(state: State, relation: Relation) -> bool:
             return below[-1] == object_
         if predicate == "above":
             return object_ in below
+        if predicate == "beside":
+            around = [*state[index + 1 : index + 2], *(state[index - 1 : index] if index else [])]
+            return any(object_ in other for other in around)
         assert predicate == "left"
         return any(object_ in other for other in state[index + 1 :])
     return False
@@ -76,7 +85,9 @@ def relations_between(
 ) -> st.SearchStrategy[Relation]:
     """Any relation that a goal can ask for, possible or not."""
     blocks = st.sampled_from(names)
-    on = st.builds(
-        Relation, blocks, st.sampled_from(("up", "above")), st.sampled_from((*names, *bases))
+    on = st.sampled_from(("up", "above", "not_up", "not_above"))
+    apart = st.sampled_from(("left", "beside", "not_left", "not_beside"))
+    return st.one_of(
+        st.builds(Relation, blocks, on, st.sampled_from((*names, *bases))),
+        st.builds(Relation, blocks, apart, blocks),
     )
-    return st.one_of(on, st.builds(Relation, blocks, st.just("left"), blocks))

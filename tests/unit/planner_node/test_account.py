@@ -43,6 +43,13 @@ def test_fault_4_a_difference_is_told_even_where_the_goal_is_reached() -> None:
     assert outcome.causes[0].startswith(f"{ALL_DONE} {format_stacks(elsewhere)}")
 
 
+def test_what_is_seen_aside_as_a_whole_asks_for_the_calibration() -> None:
+    left, middle, right = REACHED
+    assert left == right == ()
+    bench = LoopBench(knock((middle, (), ())))
+    assert "is the camera calibrated" in bench.achieve().causes[0]
+
+
 def test_a_plan_that_goes_as_predicted_has_no_causes() -> None:
     assert LoopBench().achieve().causes == ()
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -14,6 +16,7 @@ from planner_node.goals import (
     parse_goal,
     resolve_goal,
 )
+from planner_node.search import make_plan
 from scene_graph import Relation
 
 FOUR = NAMES[:4]
@@ -97,6 +100,29 @@ def test_nothing_that_some_state_fulfils_is_called_contradictory(
         return
     for state in STATES[stack_count]:
         assert not all(relation_holds(state, item) for item in relations)
+
+
+def possible(relations: Iterable[Relation]) -> bool:
+    wanted = list(relations)
+    return any(all(relation_holds(state, item) for item in wanted) for state in STATES[3])
+
+
+@settings(max_examples=100)
+@given(st.lists(RELATIONS, min_size=1, max_size=6, unique=True))
+def test_whatever_cannot_be_is_refused_with_a_smallest_choice_of_what_excludes_itself(
+    relations: list[Relation],
+) -> None:
+    goal = Goal(tuple(relations))
+    if possible(relations):
+        make_plan(STATES[3][0], goal)
+        return
+    with pytest.raises(ContradictoryGoalError) as caught:
+        make_plan(STATES[3][0], goal)
+    named = [item for item in relations if item.words in caught.value.relations]
+    assert len(named) == len(caught.value.relations)
+    assert not possible(named)
+    for item in named:
+        assert possible(other for other in named if other != item)
 
 
 @settings(max_examples=100)

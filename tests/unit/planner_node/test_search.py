@@ -21,7 +21,7 @@ from planner_node.errors import (
     SearchLimitError,
     UnreachableError,
 )
-from planner_node.goals import Goal, complete_goal
+from planner_node.goals import Count, Goal, complete_goal
 from planner_node.search import (
     ALGORITHMS,
     Limits,
@@ -48,8 +48,7 @@ def check_plan(initial: Stacks, goal: Goal, result: SearchResult) -> None:
         assert after in set(neighbours(before))
         assert len(after[move.target]) == len(before[move.target]) + 1
         assert len(after[move.source]) == len(before[move.source]) - 1
-    for item in goal.relations:
-        assert relation_holds(result.states[-1], item)
+    assert holds(goal, result.states[-1])
 
 
 @st.composite
@@ -58,12 +57,23 @@ def problems(draw: st.DrawFn) -> tuple[Stacks, Goal]:
     stack_count = draw(st.sampled_from((1, 2, 3)))
     initial = random_state(FOUR, stack_count, random.Random(draw(st.integers(0, 10_000))))
     bases = tuple(f"stack{index}" for index in range(stack_count))
-    relations = st.lists(relations_between(FOUR, bases), min_size=1, max_size=4, unique=True)
-    return initial, Goal(tuple(draw(relations)))
+    one = relations_between(FOUR, bases)
+    relations = draw(st.lists(one, min_size=1, max_size=4, unique=True))
+    if not draw(st.booleans()):
+        return initial, Goal(tuple(relations))
+    counted = tuple(draw(st.lists(one, min_size=2, max_size=4, unique=True)))
+    least = draw(st.integers(0, len(counted)))
+    most = draw(st.integers(least, len(counted)))
+    count = Count("a number of them", counted, least, most)
+    return initial, Goal(tuple(relations[1:]), (count,))
 
 
 def holds(goal: Goal, state: Stacks) -> bool:
-    return all(relation_holds(state, item) for item in goal.relations)
+    counts = all(
+        item.least <= sum(relation_holds(state, one) for one in item.relations) <= item.most
+        for item in goal.counts
+    )
+    return counts and all(relation_holds(state, item) for item in goal.relations)
 
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)

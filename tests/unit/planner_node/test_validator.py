@@ -12,13 +12,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from planner_states import NAMES, random_state, relation_holds, relations_between
 
-from planner_node.goals import Goal, complete_goal
+from planner_node.goals import Count, Goal, complete_goal
 from planner_node.search import ALGORITHMS, Limits, Problem, State, make_plan, successors
 from planner_node.validator import InvalidPlanError, validate_plan
 from scene_graph import Move, Relation, Stacks
 
 START: Stacks = (("red_box", "blue_box"), (), ("green_box",))
-GOAL = (Relation("red_box", "up", "green_box"),)
+GOAL = Goal((Relation("red_box", "up", "green_box"),))
 RIGHT = (Move(0, 1), Move(0, 2))
 
 
@@ -46,7 +46,7 @@ def test_a_wrong_plan_is_refused_with_its_step(
 
 
 def test_states_that_the_moves_do_not_lead_to_are_refused() -> None:
-    states = make_plan(START, Goal(GOAL)).states
+    states = make_plan(START, GOAL).states
     validate_plan(START, GOAL, RIGHT, states)
     with pytest.raises(InvalidPlanError, match="the state after 1 moves"):
         validate_plan(START, GOAL, RIGHT, (states[0], states[0], states[2]))
@@ -61,15 +61,28 @@ def test_states_that_the_moves_do_not_lead_to_are_refused() -> None:
 def test_a_relation_is_read_as_it_is_meant(seed: int, relation: Relation) -> None:
     state = random_state(NAMES[:4], 3, random.Random(seed))
     if relation_holds(state, relation):
-        validate_plan(state, (relation,), ())
+        validate_plan(state, Goal((relation,)), ())
     else:
         with pytest.raises(InvalidPlanError):
-            validate_plan(state, (relation,), ())
+            validate_plan(state, Goal((relation,)), ())
 
 
 def test_a_block_that_is_not_there_fulfils_nothing() -> None:
     with pytest.raises(InvalidPlanError):
-        validate_plan(START, (Relation("white_box", "left", "green_box"),), ())
+        validate_plan(START, Goal((Relation("white_box", "left", "green_box"),)), ())
+
+
+def test_a_count_is_read_as_it_is_meant() -> None:
+    state: Stacks = (("red_box", "blue_box", "green_box"), (), ())
+    above = tuple(Relation(name, "above", "stack0") for name in NAMES[:3])
+    for least in range(4):
+        for most in range(least, 4):
+            goal = Goal((), (Count("some in stack0", above, least, most),))
+            if most == 3:
+                validate_plan(state, goal, ())
+            else:
+                with pytest.raises(InvalidPlanError, match="'some in stack0' is not true"):
+                    validate_plan(state, goal, ())
 
 
 def test_the_plan_of_a_defective_search_is_not_given_out(monkeypatch: pytest.MonkeyPatch) -> None:

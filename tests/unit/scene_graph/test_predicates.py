@@ -50,18 +50,20 @@ def test_people_are_told_the_first_phrase() -> None:
 
 
 def test_a_new_predicate_is_known_until_it_is_removed() -> None:
-    def beside(subject: Spot, object_: Spot) -> bool:
-        return abs(subject.stack - object_.stack) == 1
+    def far(subject: Spot, object_: Spot) -> bool:
+        return abs(subject.stack - object_.stack) == 2
 
-    with pytest.raises(ValueError, match="unknown predicate 'beside'"):
-        Relation("a", "beside", "b")
-    PREDICATES.add(Predicate("beside", beside, phrases=("beside", "next to")))
+    with pytest.raises(ValueError, match="unknown predicate 'far'"):
+        Relation("a", "far", "b")
+    PREDICATES.add(Predicate("far", far, phrases=("far", "away from")))
     try:
-        assert Relation("a", "beside", "b").holds(spots_of((("a",), ("b",))))
-        assert PREDICATES.phrases["next", "to"].predicate.name == "beside"
+        assert Relation("a", "far", "b").holds(spots_of((("a",), (), ("b",))))
+        assert Relation("a", "not_far", "b").holds(spots_of((("a",), ("b",))))
+        assert Relation("a", "not_far", "b").words == "a not far b"
+        assert PREDICATES.phrases["away", "from"].predicate.name == "far"
     finally:
-        PREDICATES.remove("beside")
-    assert ("next", "to") not in PREDICATES.phrases
+        PREDICATES.remove("far")
+    assert ("away", "from") not in PREDICATES.phrases
 
 
 def test_a_name_or_phrase_means_one_thing() -> None:

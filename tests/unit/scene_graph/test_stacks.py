@@ -82,8 +82,8 @@ def test_only_bases_have_a_base_index() -> None:
 
 
 def test_an_unknown_predicate_is_refused() -> None:
-    with pytest.raises(ValueError, match="beside"):
-        Relation("red_box", "beside", "blue_box")
+    with pytest.raises(ValueError, match="touches"):
+        Relation("red_box", "touches", "blue_box")
 
 
 def test_a_name_tells_colour_and_shape() -> None:

@@ -92,6 +92,13 @@ def name_blocks(
 
 def _doubt(fit: ColorFit, colors: Array, names: Sequence[str]) -> str:
     """A sentence about the first colour without a certain name, or an empty string."""
+    if (fit.distances > MAX_DISTANCE).any():
+        exchanged = explain_colors(colors[:, ::-1])
+        if (exchanged.distances <= MAX_DISTANCE).all() and (exchanged.margins >= MIN_MARGIN).all():
+            return (
+                "some colours have no name, but all have one with red and blue exchanged; "
+                "is the picture's encoding (rgb8, bgr8) the one it is sent with?"
+            )
     for index, name in enumerate(names):
         red, green, blue = (round(255.0 * float(value)) for value in colors[index])
         seen = f"the colour of what would be {name}, ({red}, {green}, {blue}) of 255,"

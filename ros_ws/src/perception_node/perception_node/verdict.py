@@ -81,7 +81,8 @@ def judge_empty(occlusion: Occlusion, config: PerceptionConfig) -> Verdict:
     if sentence := occluded(occlusion, config.max_hidden):
         return Verdict(GraphStatus.OCCLUDED, sentence)
     return Verdict(
-        GraphStatus.NO_OBJECTS, "no block is seen; put blocks on the table, or check the camera"
+        GraphStatus.NO_OBJECTS,
+        "no block is seen; put blocks on the table, or check the camera and its calibration",
     )
 
 

@@ -7,11 +7,12 @@ search and everything that is published.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
-from scene_graph import ABOVE, LEFT, PREDICATES, UP, Move, Relation, Spot, base_index
+from scene_graph import ABOVE, LEFT, NOT, PREDICATES, UP, Move, Relation, Spot, base_index
 
 from .errors import PlannerError
+from .goals.goal import Goal
 
 
 class InvalidPlanError(PlannerError):
@@ -24,11 +25,11 @@ class InvalidPlanError(PlannerError):
 
 def validate_plan(
     initial: Sequence[Sequence[str]],
-    relations: Iterable[Relation],
+    goal: Goal,
     moves: Sequence[Move],
     states: Sequence[Sequence[Sequence[str]]] | None = None,
 ) -> None:
-    """Raises InvalidPlanError unless the moves lead from a state to one that fulfils all relations.
+    """Raises InvalidPlanError unless the moves lead from a state to one that fulfils the goal.
 
     Args:
         states: those that the plan says it goes through, the initial one first; None: it does not.
@@ -49,11 +50,15 @@ def validate_plan(
             raise InvalidPlanError(f"move {step + 1}, {move}, takes from an empty place", step)
         stacks[move.target].append(stacks[move.source].pop())
         _compare(stacks, states, step + 1)
-    for relation in relations:
+    for relation in goal.relations:
         if not _holds(relation, stacks):
             raise InvalidPlanError(
                 f"after the last move '{relation.words}' is not true", len(moves)
             )
+    for count in goal.counts:
+        true = [relation for relation in count.relations if _holds(relation, stacks)]
+        if not count.least <= len(true) <= count.most:
+            raise InvalidPlanError(f"after the last move '{count}' is not true", len(moves))
 
 
 def _compare(
@@ -69,6 +74,9 @@ def _holds(relation: Relation, stacks: list[list[str]]) -> bool:
     subject, object_ = (_spot(name, stacks) for name in (relation.subject, relation.object))
     if subject is None or object_ is None:
         return False
+    if relation.predicate.startswith(NOT):
+        positive = relation.predicate.removeprefix(NOT)
+        return not _holds(Relation(relation.subject, positive, relation.object), stacks)
     if relation.predicate == UP:
         return subject == (object_[0], object_[1] + 1)
     if relation.predicate == ABOVE:

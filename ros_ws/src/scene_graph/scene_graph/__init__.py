@@ -19,7 +19,19 @@ from .objects import (
 )
 from .places import ROW_OF_THREE, Place, base_index, base_name
 from .poses import BlockPose, quaternion_from_yaw, rotation_from_quaternion, wrap_line
-from .predicates import ABOVE, FRONT, LEFT, PREDICATES, UP, Phrase, Predicate, Predicates, Spot
+from .predicates import (
+    ABOVE,
+    BESIDE,
+    FRONT,
+    LEFT,
+    NOT,
+    PREDICATES,
+    UP,
+    Phrase,
+    Predicate,
+    Predicates,
+    Spot,
+)
 from .relations import Relation, format_relations
 from .stacks import (
     Stacks,
@@ -34,12 +46,14 @@ from .stacks import (
 __all__ = [
     "ABOVE",
     "BASIC_COLORS",
+    "BESIDE",
     "BOX",
     "COLORS",
     "CYLINDER",
     "FLAT_TOPPED",
     "FRONT",
     "LEFT",
+    "NOT",
     "PREDICATES",
     "PRISM",
     "ROW_OF_THREE",

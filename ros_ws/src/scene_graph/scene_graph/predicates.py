@@ -2,7 +2,8 @@
 """Predicates: what a relation can say, in code, in words, and in a state.
 
 A new predicate is one entry of :data:`PREDICATES`: goals are parsed with its phrases, searched for
-and checked with its meaning, and printed with its first phrase.
+and checked with its meaning, and printed with its first phrase. It brings its negation, whose name
+is ``not_`` and its own.
 """
 
 from __future__ import annotations
@@ -14,7 +15,10 @@ from typing import Final, NamedTuple
 UP: Final = "up"
 ABOVE: Final = "above"
 LEFT: Final = "left"
+BESIDE: Final = "beside"
 FRONT: Final = "front"
+#: In front of a predicate's name, its negation.
+NOT: Final = "not_"
 
 
 class Spot(NamedTuple):
@@ -65,7 +69,10 @@ class Phrase(NamedTuple):
 
 
 class Predicates:
-    """The known predicates by name; iterates over names in the order they were added."""
+    """The known predicates by name; iterates over those added, in their order, without negations.
+
+    Every predicate that is added brings its negation, whose name starts with :data:`NOT`.
+    """
 
     def __init__(self, *predicates: Predicate) -> None:
         self._by_name: dict[str, Predicate] = {}
@@ -80,7 +87,11 @@ class Predicates:
         return name in self._by_name
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._by_name)
+        return (name for name in self._by_name if not name.startswith(NOT))
+
+    def negation(self, predicate: Predicate) -> Predicate:
+        """The one that is true where ``predicate`` is not."""
+        return self._by_name[NOT + predicate.name]
 
     @property
     def phrases(self) -> dict[tuple[str, ...], Phrase]:
@@ -91,10 +102,12 @@ class Predicates:
         """Makes a predicate known everywhere.
 
         Raises:
-            ValueError: its name or one of its phrases is taken.
+            ValueError: its name or one of its phrases is taken, or its name is that of a negation.
         """
         if predicate.name in self._by_name:
             raise ValueError(f"there is a predicate {predicate.name!r} already")
+        if predicate.name.startswith(NOT):
+            raise ValueError(f"{predicate.name!r} is a negation; every predicate brings its own")
         new: dict[tuple[str, ...], Phrase] = {}
         for texts, phrase in (
             (predicate.phrases, Phrase(predicate)),
@@ -105,11 +118,18 @@ class Predicates:
         if taken := sorted(" ".join(words) for words in new.keys() & self._phrases.keys()):
             raise ValueError(f"the phrase {taken[0]!r} has a meaning already")
         self._by_name[predicate.name] = predicate
+        self._by_name[NOT + predicate.name] = Predicate(
+            NOT + predicate.name,
+            lambda subject, object_: not predicate.holds(subject, object_),
+            phrases=(f"not {predicate.words}",),
+            takes_place=predicate.takes_place,
+        )
         self._phrases |= new
 
     def remove(self, name: str) -> None:
         """Forgets a predicate; raises KeyError for an unknown name."""
         predicate = self._by_name.pop(name)
+        del self._by_name[NOT + name]
         self._phrases = {
             words: phrase
             for words, phrase in self._phrases.items()
@@ -117,28 +137,55 @@ class Predicates:
         }
 
 
-#: The predicates of 3.2 and of goals. ``front`` is true of nothing as long as there is one row.
+#: The predicates of 3.2 and of goals. ``front`` is true of nothing as long as there is one row. The
+#: word "the" is not part of a phrase: goals are read without it.
 PREDICATES: Final = Predicates(
     Predicate(
         UP,
         lambda subject, object_: (
             subject.stack == object_.stack and subject.level == object_.level + 1
         ),
-        phrases=("on", "on top of", "up"),
+        phrases=(
+            "on", "on top of", "on top", "up", "onto", "on to", "onto top of", "upon", "atop",
+            "atop of", "over top of", "directly on", "directly on top of", "directly onto",
+            "directly above", "directly over", "right on top of", "immediately above",
+            "immediately on top of", "straight on top of",
+        ),
+        inverse_phrases=(
+            "directly below", "directly under", "directly underneath", "directly beneath",
+            "immediately below", "immediately under", "right under", "right below",
+            "right underneath", "right beneath", "supports", "carries",
+        ),
+        place_phrases=("at bottom of", "at very bottom of"),
     ),
     Predicate(
         ABOVE,
         lambda subject, object_: subject.stack == object_.stack and subject.level > object_.level,
-        phrases=("above",),
-        inverse_phrases=("below",),
-        place_phrases=("in",),
+        phrases=("above", "over", "somewhere above"),
+        inverse_phrases=("below", "under", "underneath", "beneath", "somewhere below"),
+        place_phrases=("in", "into", "inside", "to", "at", "within"),
     ),
     Predicate(
         LEFT,
         lambda subject, object_: subject.stack < object_.stack,
-        phrases=("left of", "to the left of", "left"),
-        inverse_phrases=("right of", "to the right of", "right"),
+        phrases=(
+            "left of", "to left of", "left", "on left of", "at left of", "on left side of",
+            "to left side of", "somewhere left of", "somewhere to left of", "left from",
+            "further left than", "in a stack further left than",
+        ),
+        inverse_phrases=(
+            "right of", "to right of", "right", "on right of", "at right of", "on right side of",
+            "to right side of", "somewhere right of", "somewhere to right of", "right from",
+            "further right than", "in a stack further right than",
+        ),
+        takes_place=False,
+    ),
+    Predicate(
+        BESIDE,
+        lambda subject, object_: abs(subject.stack - object_.stack) == 1,
+        phrases=("next to", "right next to", "directly next to", "beside", "right beside",
+                 "adjacent to", "neighbouring"),
         takes_place=False,
     ),
     Predicate(FRONT, lambda _subject, _object: False, takes_place=False),
-)
+)  # fmt: skip

@@ -76,10 +76,10 @@ def scene_for_goal(goal: str, seed: int, blocks: int | None = None) -> tuple[int
         return seed, blocks or DEFAULT_BLOCKS
     boxes = [object_name(color, BOX) for color in BASIC_COLORS]
     parsed = parse_goal(goal)
-    for words in (words for item in parsed for words in (item.subject, item.object)):
+    for words in (term.words for item in parsed for term in (item.subject, item.object)):
         known = {*BASIC_COLORS, BOX, "block", "object"}
         unknown = set(words.text.replace("_", " ").split()) - known
-        if words.base is None and unknown:
+        if not words.is_place and unknown:
             raise SceneForGoalError(
                 f"'{words.text}' is in no scene of the demo; it has boxes, of the colours "
                 f"{', '.join(BASIC_COLORS)}"

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
-from typing import Final, TextIO
+from typing import Any, Final, TextIO
 
 #: Ctrl-C, what ``kill`` and ``timeout`` send, and what a terminal sends when it is closed.
 SIGNALS: Final = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -30,11 +30,17 @@ def listen_to_signals() -> None:
     """
 
     def interrupt(number: int, _frame: FrameType | None) -> None:
+        # What is being made at this moment stays half-made; its end is nothing to complain of.
+        sys.unraisablehook = _nothing
         raise InterruptedBySignalError(number)
 
     for number in SIGNALS:
         if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, interrupt)
+
+
+def _nothing(_unraisable: Any) -> None:
+    """Says nothing."""
 
 
 @contextmanager

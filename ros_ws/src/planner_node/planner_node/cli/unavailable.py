@@ -12,7 +12,6 @@ WHAT_TO_DO: Final = (
 )
 
 
-
 class PlannerUnavailableError(RuntimeError):
     """planner_node does not answer; the message says what to do about it."""
 

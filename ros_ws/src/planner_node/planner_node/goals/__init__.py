@@ -2,11 +2,13 @@
 """Goals: what people type, what it means in a scene, and what excludes itself."""
 
 from .contradictions import check_contradictions, find_contradiction
-from .goal import Goal, complete_goal
-from .parse import ParsedRelation, Words, parse_goal
+from .goal import Count, Goal, complete_goal
+from .parse import ParsedRelation, parse_goal
 from .resolve import goal_of_picture, resolve_goal, resolve_name
+from .terms import Words
 
 __all__ = [
+    "Count",
     "Goal",
     "ParsedRelation",
     "Words",

@@ -3,34 +3,79 @@
 
 The rules are sound: what they refuse, no arrangement of blocks fulfils, whatever the scene. They
 are not complete; what they let pass and is impossible all the same, the search proves unreachable.
-They know ``up``, ``above`` and ``left``; of other predicates they say nothing.
+They know ``up``, ``above``, ``left``, ``beside`` and their negations; of other predicates they say
+nothing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import Final
 
-from scene_graph import ABOVE, LEFT, PREDICATES, UP, Relation, base_index, base_name
+from scene_graph import (
+    ABOVE,
+    BESIDE,
+    LEFT,
+    NOT,
+    PREDICATES,
+    UP,
+    Relation,
+    base_index,
+    base_name,
+)
 
 from ..errors import ContradictoryGoalError
-from .goal import Goal
+from .goal import Count, Goal
 
-_KNOWN: Final = (UP, ABOVE, LEFT)
+_KNOWN: Final = (UP, ABOVE, LEFT, BESIDE)
 
 
 def check_contradictions(goal: Goal, stack_count: int) -> None:
     """Raises ContradictoryGoalError with a smallest set of relations that exclude one another."""
     relations = list(goal.relations)
-    if find_contradiction(relations, stack_count) is None:
-        return
-    for relation in goal.relations:
-        fewer = [item for item in relations if item != relation]
-        if find_contradiction(fewer, stack_count) is not None:
-            relations = fewer
-    problem = find_contradiction(relations, stack_count)
-    assert problem is not None
-    raise ContradictoryGoalError([item.words for item in relations], problem)
+    if find_contradiction(relations, stack_count) is not None:
+        relations = _fewest(relations, lambda some: find_contradiction(some, stack_count))
+        problem = find_contradiction(relations, stack_count)
+        assert problem is not None
+        raise ContradictoryGoalError([item.words for item in relations], problem)
+    for count in goal.counts:
+        if _uncountable(count, relations, stack_count):
+            problem_of = partial(_uncountable, count, stack_count=stack_count)
+            relations = _fewest(relations, problem_of)
+            problem = problem_of(relations)
+            assert problem is not None
+            raise ContradictoryGoalError([*(item.words for item in relations), str(count)], problem)
+
+
+def _fewest(
+    relations: Sequence[Relation], problem_of: Callable[[Sequence[Relation]], str | None]
+) -> list[Relation]:
+    """A part of the relations that has a problem too, and none without any one of them."""
+    left = list(relations)
+    for relation in relations:
+        fewer = [item for item in left if item != relation]
+        if problem_of(fewer) is not None:
+            left = fewer
+    return left
+
+
+def _uncountable(count: Count, relations: Sequence[Relation], stack_count: int) -> str | None:
+    """Why too few of a count's relations go with the others, each by itself."""
+    fitting = [
+        item
+        for item in count.relations
+        if find_contradiction([*relations, item], stack_count) is None
+    ]
+    if len(fitting) >= count.least:
+        return None
+    return f"'{count}' cannot be: {_number_that_could_hold(fitting)}"
+
+
+def _number_that_could_hold(fitting: Sequence[Relation]) -> str:
+    if not fitting:
+        return "none of the blocks it speaks of can be there"
+    return f"only {', '.join(item.words for item in fitting)} can be"
 
 
 def find_contradiction(relations: Iterable[Relation], stack_count: int) -> str | None:
@@ -39,12 +84,25 @@ def find_contradiction(relations: Iterable[Relation], stack_count: int) -> str |
     for relation in relations:
         if problem := _impossible_alone(relation, stack_count):
             return problem
+    never = {
+        (item.subject, item.predicate.removeprefix(NOT), item.object)
+        for item in relations
+        if item.predicate.startswith(NOT)
+    }
     relations = tuple(item for item in relations if item.predicate in _KNOWN)
     return (
-        _two_at_one_place(relations)
+        _denied(relations, never)
+        or _two_at_one_place(relations)
         or _impossible_columns(relations, stack_count)
-        or _impossible_order(relations)
+        or _impossible_order(relations, never)
     )
+
+
+def _denied(relations: Iterable[Relation], never: set[tuple[str, str, str]]) -> str | None:
+    for item in relations:
+        if (item.subject, item.predicate, item.object) in never:
+            return f"{item.words} cannot be and not be"
+    return None
 
 
 def _impossible_alone(relation: Relation, stack_count: int) -> str | None:
@@ -76,8 +134,10 @@ def _two_at_one_place(relations: tuple[Relation, ...]) -> str | None:
     return None
 
 
-def _impossible_order(relations: tuple[Relation, ...]) -> str | None:
-    """Closes "is somewhere above" and looks for something above itself."""
+def _impossible_order(
+    relations: tuple[Relation, ...], never: set[tuple[str, str, str]]
+) -> str | None:
+    """Closes "is somewhere above" and looks for something above itself, or where it may not be."""
     on = {(item.subject, item.object) for item in relations if item.predicate == UP}
     above = on | {(item.subject, item.object) for item in relations if item.predicate == ABOVE}
     stack_of = _stacks_of(relations)
@@ -103,6 +163,8 @@ def _impossible_order(relations: tuple[Relation, ...]) -> str | None:
     for upper, lower in sorted(above):
         if upper == lower:
             return f"{upper} would have to be above itself"
+        if (upper, ABOVE, lower) in never:
+            return f"{upper} would have to be above {lower}"
     return None
 
 
@@ -123,6 +185,9 @@ def _impossible_columns(relations: tuple[Relation, ...], stack_count: int) -> st
     lefts = [item for item in relations if item.predicate == LEFT]
     for item in lefts:
         if stack_of[item.subject] == stack_of[item.object]:
+            return f"{item.subject} and {item.object} would have to be in one stack and apart"
+    for item in relations:
+        if item.predicate == BESIDE and stack_of[item.subject] == stack_of[item.object]:
             return f"{item.subject} and {item.object} would have to be in one stack and apart"
     order = {(stack_of[item.subject], stack_of[item.object]) for item in lefts}
     while not (more := _joined(order)) <= order:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Goals: sets of relations that a state has to fulfil (z_goal of 5.2.2).
+"""Goals: sets of relations that a state has to fulfil (z_goal of 5.2.2), and numbers of them.
 
 A goal image gives a complete goal, one relation a block; text may give any part of it. What a
 relation means stands in :data:`scene_graph.PREDICATES` only.
@@ -7,31 +7,63 @@ relation means stands in :data:`scene_graph.PREDICATES` only.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from scene_graph import UP, Relation, Stacks, base_index, base_name, spots_of, up_relations
+from scene_graph import UP, Relation, Spot, Stacks, base_index, base_name, spots_of, up_relations
+
+
+@dataclass(frozen=True)
+class Count:
+    """How many of some relations have to hold: "three blocks in stack1", "a red block on blue".
+
+    Attributes:
+        words: as people are told it.
+        least, most: both included.
+    """
+
+    words: str
+    relations: tuple[Relation, ...]
+    least: int
+    most: int
+
+    def __str__(self) -> str:
+        return self.words
+
+    def holds(self, spots: Mapping[str, Spot]) -> bool:
+        """Whether a state fulfils it; see :meth:`scene_graph.Relation.holds`."""
+        return self.least <= sum(item.holds(spots) for item in self.relations) <= self.most
 
 
 @dataclass(frozen=True)
 class Goal:
-    """All of ``relations`` at once."""
+    """All of ``relations`` and all of ``counts`` at once."""
 
     relations: tuple[Relation, ...]
+    counts: tuple[Count, ...] = ()
 
     def __str__(self) -> str:
-        return ", ".join(relation.words for relation in self.relations)
+        return ", ".join([*(item.words for item in self.relations), *map(str, self.counts)])
 
     @property
     def names(self) -> frozenset[str]:
         """The blocks that the goal speaks of, without bases."""
-        mentioned = {name for item in self.relations for name in (item.subject, item.object)}
+        relations = [*self.relations, *(one for item in self.counts for one in item.relations)]
+        mentioned = {name for item in relations for name in (item.subject, item.object)}
         return frozenset(name for name in mentioned if base_index(name) is None)
 
     def holds(self, stacks: Stacks) -> bool:
         """Whether a state fulfils all relations."""
         spots = spots_of(stacks)
-        return all(relation.holds(spots) for relation in self.relations)
+        relations = all(item.holds(spots) for item in self.relations)
+        return relations and all(item.holds(spots) for item in self.counts)
+
+    def fulfilled_by(self, stacks: Stacks) -> tuple[Relation, ...]:
+        """The relations that a state fulfils: all of the goal, and those that are counted."""
+        spots = spots_of(stacks)
+        counted = (one for item in self.counts for one in item.relations)
+        found = [item for item in (*self.relations, *counted) if item.holds(spots)]
+        return tuple(dict.fromkeys(found))
 
     def state(self, names: Iterable[str], stack_count: int) -> Stacks | None:
         """The one state that a complete goal allows, or None for a partial or impossible goal.

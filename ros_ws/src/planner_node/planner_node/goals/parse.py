@@ -1,183 +1,302 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Goals as people type them: "put red on blue, the green box left of red and cyan on stack 2".
+"""Goals as people type them: "please put red on blue, and nothing on stack 2".
 
 Parsing needs no scene, so that a goal that makes no sense is refused before anything else happens;
 :mod:`planner_node.goals.resolve` then finds the objects that its names mean. Every way to write a
-relation comes from :data:`scene_graph.PREDICATES`.
+relation comes from :data:`scene_graph.PREDICATES`; the other words are in
+:mod:`planner_node.goals.language`.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Final
 
-from scene_graph import PREDICATES, Phrase, base_name
+from scene_graph import ABOVE, LEFT, PREDICATES, UP, Phrase
 
 from ..errors import InvalidGoalError
+from .clauses import EXAMPLE, Said, no_relation, read_clause
+from .language import BOTH
+from .sentences import is_heading, sentences
+from .terms import Kind, Term, Words
 
-#: Words that may stand in front of a name or a predicate and mean nothing.
-FILLERS: Final = frozenset({"the", "is"})
-#: Verbs that a relation may start with; the second kind are nouns too, as in "stack 2 below red".
-VERBS: Final = frozenset({"put", "move"})
-NOUN_VERBS: Final = frozenset({"place", "stack"})
-POLITE: Final = "please"
-EXAMPLE: Final = "write relations like 'red on blue, green left of red'"
-
-_TOKEN: Final = re.compile(r"(?P<word>[^\W_][\w-]*)|(?P<separator>[,;])|(?P<other>\S)")
-_BASE: Final = re.compile(r"stack[ _]?(\d+)")
-_Phrases = Mapping[tuple[str, ...], Phrase]
-
-
-@dataclass(frozen=True)
-class Words:
-    """Some words of the goal in lower case, and where they start, counted from 0."""
-
-    text: str
-    offset: int
-
-    @property
-    def base(self) -> str | None:
-        """The name of the base that is meant, or None where it is a block."""
-        match = _BASE.fullmatch(self.text)
-        return base_name(int(match[1])) if match else None
+_IT: Final = frozenset({"it", "this", "that"})
 
 
 @dataclass(frozen=True)
 class ParsedRelation:
-    """A relation whose names are not yet resolved; subject and object as they were written."""
+    """A relation whose names are not yet resolved; subject and object as they were written.
 
-    subject: Words
+    Attributes:
+        negated: it must not hold.
+    """
+
+    subject: Term
     phrase: Phrase
-    object: Words
-
-
-@dataclass(frozen=True)
-class _Found:
-    """A phrase in a clause: its words from ``first`` to before ``last``."""
-
-    first: int
-    last: int
-    phrase: Phrase
+    object: Term
+    negated: bool = False
 
 
 def parse_goal(text: str) -> tuple[ParsedRelation, ...]:
-    """Splits a goal into relations at commas, semicolons and "and".
+    """Reads the relations of a goal.
+
+    Relations are separated by commas, semicolons, full stops, "and" and the like. Within a sentence
+    names without a relation belong to the relation beside them ("red, blue and green in stack 1"),
+    and a relation without a subject has that of the one before ("red on blue and left of green").
 
     Raises:
-        InvalidGoalError: if the goal is empty, or a part of it is not a relation.
+        InvalidGoalError: if the goal is empty, or a part of it is not understood; nothing is left
+            out but words that are known to mean nothing.
     """
-    phrases = PREDICATES.phrases
-    relations = tuple(_parse_relation(text, clause, phrases) for clause in _clauses(text))
-    if not relations:
-        raise InvalidGoalError(f"the goal is empty; {EXAMPLE}")
-    return relations
+    reader = _Reader(text)
+    for sentence in sentences(text):
+        reader.read([read_clause(text, clause) for clause in sentence])
+    return reader.finish()
 
 
-def _clauses(text: str) -> Iterator[list[Words]]:
-    """The words of each relation; empty ones, as between ", and", are left out."""
-    words: list[Words] = []
-    for match in _TOKEN.finditer(text):
-        if match["other"]:
-            raise InvalidGoalError("unexpected character", match.start(), match["other"])
-        if match["word"] and match["word"].lower() != "and":
-            words.append(Words(match["word"].lower(), match.start()))
-        elif words:
-            yield words
-            words = []
-    if words:
-        yield words
+class _Reader:
+    """Puts the clauses of a goal together, sentence by sentence.
 
+    Attributes:
+        relations: what was read so far.
+        taken: what "take red" took, until it is said where to put it.
+    """
 
-def _parse_relation(text: str, words: list[Words], phrases: _Phrases) -> ParsedRelation:
-    start, end = words[0].offset, _end(words)
-    words = _without_verb(words, phrases)
-    found = list(_find(words, phrases))
-    if not found:
-        known = ", ".join(_known())
-        raise InvalidGoalError(
-            f"no relation found; known are {known}; {EXAMPLE}", start, text[start:end]
-        )
-    if len(found) > 1:
-        second = words[found[1].first].offset
-        raise InvalidGoalError(
-            "a second relation starts here; separate relations by a comma or 'and'",
-            second,
-            text[second:end],
-        )
-    written = words[found[0].first : found[0].last]
-    start, end = written[0].offset, _end(written)
-    subject, object_ = _name(words[: found[0].first]), _name(words[found[0].last :])
-    if subject is None or object_ is None:
-        side = "before" if subject is None else "after"
-        raise InvalidGoalError(f"there is no block {side} this", start, text[start:end])
-    phrase = found[0].phrase
-    _check_bases(subject, phrase, object_, " ".join(word.text for word in written))
-    return ParsedRelation(subject, phrase, object_)
+    def __init__(self, text: str) -> None:
+        self._text = text
+        self.relations: list[ParsedRelation] = []
+        self.taken: Term | None = None
+        #: Of the last relation; before a sentence's first one, of the sentence before.
+        self._subjects: list[Term] = []
+        self._object: Term | None = None
+        self._link: tuple[Phrase, bool, Words] | None = None
+        #: All blocks that were named, by their words.
+        self._named: dict[str, Term] = {}
 
-
-def _without_verb(words: list[Words], phrases: _Phrases) -> list[Words]:
-    """The words of a clause without "please" and a verb in front."""
-    if words[0].text == POLITE:
-        words = words[1:]
-    if not words:
-        return words
-    verb, rest = words[0].text, words[1:]
-    names_a_place = not rest or rest[0].text.isdigit() or _starts_with(rest, phrases)
-    is_verb = verb in VERBS or (verb in NOUN_VERBS and not names_a_place)
-    return rest if is_verb else words
-
-
-def _starts_with(words: Sequence[Words], phrases: _Phrases) -> bool:
-    """Whether a phrase stands in front; fillers before it count for nothing."""
-    kept = tuple(word.text for word in words if word.text not in FILLERS)
-    return any(kept[: len(phrase)] == phrase for phrase in phrases)
-
-
-def _end(words: Sequence[Words]) -> int:
-    return words[-1].offset + len(words[-1].text)
-
-
-def _find(words: Sequence[Words], phrases: _Phrases) -> Iterator[_Found]:
-    """Every phrase among the words; the longest that fits is taken."""
-    longest = max(map(len, phrases), default=0)
-    texts = tuple(word.text for word in words)
-    index = 0
-    while index < len(words):
-        for last in range(min(index + longest, len(words)), index, -1):
-            if phrase := phrases.get(texts[index:last]):
-                yield _Found(index, last, phrase)
-                index = last
+    def read(self, sentence: Sequence[Said]) -> None:
+        """Adds the relations of a sentence."""
+        said = _turned_at_comma(sentence)
+        for number, clause in enumerate(said):
+            if clause.order is not None:
+                self._read_row(clause, clause.order, said[number + 1 :])
+                said = [other for other in said[:number] if not is_heading(other.words)]
                 break
+        waiting: list[Said] = []
+        subjects: list[Term] = []
+        last: Said | None = None
+        for number, clause in enumerate(said):
+            follows = any(other.links or other.clears for other in said[number + 1 :])
+            named = [other.subject for other in waiting if other.subject is not None]
+            if clause.takes:
+                if waiting or self.taken is not None:
+                    raise no_relation(self._text, clause.words)
+                self.taken = clause.subject
+                continue
+            if clause.clears:
+                assert clause.subject is not None
+                subjects, waiting, last = [clause.subject], [], clause
+                for term in (*named, clause.subject):
+                    self._clear(self._meant(term, None))
+                self._subjects, self._object = subjects, None
+                continue
+            if clause.links:
+                subjects = self._subjects_of(clause, named, subjects)
+                self._add_links(subjects, clause)
+                waiting, last = [], clause
+                continue
+            assert clause.subject is not None
+            if self._waits(clause, last, follows):
+                waiting.append(clause)
+            elif last is not None and last.clears:
+                self._clear(clause.subject)
+            elif last is not None and last.links[-1][0] == Phrase(PREDICATES[UP]):
+                # Nothing stands directly on two.
+                raise no_relation(self._text, clause.words)
+            elif self._object is not None and self._object.is_place and not clause.subject.is_place:
+                # "in stack 0 put red and blue"
+                assert self._link is not None
+                self._add([clause.subject], *self._link, self._object)
+            else:
+                assert self._link is not None
+                self._add(subjects, *self._link, clause.subject)
+        if waiting:
+            raise no_relation(self._text, waiting[0].words)
+        if self.taken is not None and last is not None:
+            raise _untold(self.taken)
+
+    def _read_row(self, heading: Said, order: tuple[str, bool], names: Sequence[Said]) -> None:
+        """The relations of "from bottom to top in stack 1: red, green, blue"."""
+        predicate, ascending = order
+        if unfit := [item for item in names if item.subject is None or item.links or item.clears]:
+            raise no_relation(self._text, unfit[0].words)
+        blocks = [item.subject for item in (heading, *names) if item.subject is not None]
+        if len(blocks) < 2 or any(block.kind is not Kind.THE or block.is_place for block in blocks):
+            raise no_relation(self._text, heading.words)
+        if not ascending:
+            blocks.reverse()
+        phrase = Phrase(PREDICATES[predicate])
+        written = Words(phrase.predicate.words, heading.words[0].offset)
+        for _, _, place, _ in heading.links:
+            self._add(blocks[:1], phrase, False, written, place)
+        for first, second in pairwise(blocks):
+            self._add([second], phrase, False, written, first)
+
+    def finish(self) -> tuple[ParsedRelation, ...]:
+        """All relations."""
+        if self.taken is not None:
+            raise _untold(self.taken)
+        if not self.relations:
+            raise InvalidGoalError(f"the goal is empty; {EXAMPLE}")
+        return tuple(self.relations)
+
+    def _waits(self, clause: Said, last: Said | None, follows: bool) -> bool:
+        """Whether a name without a relation belongs to the next one, not to the last one."""
+        assert clause.subject is not None
+        if clause.asks and not follows:
+            raise no_relation(self._text, clause.words)
+        if last is None:
+            return True
+        if not follows:
+            return False
+        if clause.asks or last.clears:
+            return True
+        phrase, _, object_, _ = last.links[-1]
+        if phrase.predicate.name == UP or (object_.is_place and not clause.subject.is_place):
+            return True
+        raise InvalidGoalError(
+            "it is not clear which relation this belongs to; write every relation out",
+            clause.subject.words.offset,
+            clause.subject.words.text,
+        )
+
+    def _subjects_of(
+        self, clause: Said, named: Sequence[Term], before: Sequence[Term]
+    ) -> list[Term]:
+        """The names before a clause and its own, those of the one before, or what was taken."""
+        if clause.subject is None:
+            if self.taken is not None and not named:
+                taken, self.taken = self.taken, None
+                return [taken]
+            if not named and not before:
+                first = clause.links[0][3]
+                raise InvalidGoalError("there is no block before this", first.offset, first.text)
+            return list(named or before)
+        if clause.subject.words.text in _IT and self.taken is not None and not named:
+            taken, self.taken = self.taken, None
+            return [taken]
+        if clause.subject.words.text in BOTH:
+            return self._all_named(clause.subject)
+        return [*named, self._meant(clause.subject, None)]
+
+    def _all_named(self, term: Term) -> list[Term]:
+        """The blocks that "both" or "all three" stands for: those that were named, if so many."""
+        number = {"all three": 3, "all four": 4}.get(term.words.text, 2)
+        if len(self._named) != number:
+            raise _unclear(term)
+        return list(self._named.values())
+
+    def _meant(self, term: Term, phrase: Phrase | None, carried: bool = False) -> Term:
+        """A name itself; for "it" the one that it can only stand for.
+
+        Args:
+            phrase: the relation whose object it is; None for a subject.
+            carried: the relation's subject is that of the one before.
+        """
+        if term.words.text not in _IT:
+            return term
+        subject = self._subjects[0] if len(self._subjects) == 1 else None
+        found: Term | None = None
+        if self._object is None or self._object.is_place:
+            found = subject
+        elif phrase is not None and carried:
+            found = self._object
+        elif phrase == Phrase(PREDICATES[UP]) and self._link is not None:
+            # On what already carries a block nothing else can be put.
+            before, denied, _ = self._link
+            found = subject if before == phrase and not denied else None
+        if found is None or found.kind is not Kind.THE:
+            raise _unclear(term)
+        return found
+
+    def _clear(self, term: Term) -> None:
+        nothing = Term(Words("block", term.words.offset), Kind.NO, 0, 0)
+        self.relations.append(ParsedRelation(nothing, Phrase(PREDICATES[UP]), term))
+
+    def _add_links(self, subjects: Sequence[Term], clause: Said) -> None:
+        """The relations of a chain, "red on blue on green"."""
+        links = clause.links
+        for (phrase, denied, object_, _), (other, _, _, written) in pairwise(links):
+            # Where it can be read as said of the first as well, and that is something else, it is
+            # asked back: "put red left of blue on stack1".
+            same = phrase == other and phrase.predicate.name in (UP, ABOVE, LEFT)
+            onto = phrase.predicate.name == UP and not phrase.inverse
+            if denied or object_.kind is not Kind.THE or not (same or onto):
+                raise InvalidGoalError(
+                    "a second relation starts here; separate relations by a comma or 'and'",
+                    written.offset,
+                    written.text,
+                )
+        carried = clause.subject is None
+        for phrase, denied, object_, written in links:
+            if object_.words.text in BOTH:
+                objects = self._all_named(object_)
+            else:
+                objects = [self._meant(object_, phrase, carried)]
+            for one in objects:
+                self._add(subjects, phrase, denied, written, one)
+            self._subjects, self._object = list(subjects), objects[-1]
+            self._link = (phrase, denied, written)
+            subjects, carried = objects[-1:], False
+
+    def _add(
+        self, subjects: Sequence[Term], phrase: Phrase, denied: bool, written: Words, object_: Term
+    ) -> None:
+        for subject in subjects:
+            if subject.others:
+                if not self._named:
+                    raise _unclear(subject)
+                subject = replace(
+                    subject, others=False, but=tuple(term.words for term in self._named.values())
+                )
+            for term in (subject, object_):
+                if term.words.text in _IT:
+                    raise _unclear(term)
+                if term.kind is Kind.THE and not term.is_place:
+                    self._named.setdefault(term.words.text, term)
+            _check_places(subject, phrase, object_, written.text)
+            meaning = phrase
+            together = subject.several or len(subjects) > 1
+            if together and object_.is_place and phrase == Phrase(PREDICATES[UP]) and not denied:
+                # Several blocks on a place cannot all stand directly on it.
+                meaning = phrase._replace(predicate=PREDICATES[ABOVE])
+            self.relations.append(ParsedRelation(subject, meaning, object_, denied))
+
+
+def _turned_at_comma(said: Sequence[Said]) -> list[Said]:
+    """With "on blue, put red" as one clause."""
+    result: list[Said] = []
+    for clause in said:
+        before = result[-1] if result else None
+        if clause.asks and before is not None and before.links and before.subject is None:
+            result[-1] = replace(before, subject=clause.subject)
         else:
-            index += 1
+            result.append(clause)
+    return result
 
 
-def _name(words: Sequence[Words]) -> Words | None:
-    kept = [word for word in words if word.text not in FILLERS]
-    return Words(" ".join(word.text for word in kept), kept[0].offset) if kept else None
-
-
-def _known() -> Iterator[str]:
-    """One way to write each relation, its inverse, and its form for places."""
-    for name in PREDICATES:
-        predicate = PREDICATES[name]
-        for ways in (predicate.phrases, predicate.inverse_phrases, predicate.place_phrases):
-            yield from ways[:1]
-
-
-def _check_bases(subject: Words, phrase: Phrase, object_: Words, written: str) -> None:
-    if phrase.needs_place and object_.base is None:
+def _check_places(subject: Term, phrase: Phrase, object_: Term, written: str) -> None:
+    if phrase.needs_place and not object_.is_place:
         raise InvalidGoalError(
             f"'{written}' needs a place, such as stack0; "
             f"use '{phrase.predicate.words}' for a block",
-            object_.offset,
-            object_.text,
+            object_.words.offset,
+            object_.words.text,
         )
     if not phrase.predicate.takes_place:
-        for words in (subject, object_):
-            if words.base is not None:
+        for term in (subject, object_):
+            if term.is_place:
                 fitting = [
                     f"'{PREDICATES[name].words}'"
                     for name in PREDICATES
@@ -185,6 +304,20 @@ def _check_bases(subject: Words, phrase: Phrase, object_: Words, written: str) -
                 ]
                 raise InvalidGoalError(
                     f"'{written}' relates two blocks; use {' or '.join(fitting)} for a place",
-                    words.offset,
-                    words.text,
+                    term.words.offset,
+                    term.words.text,
                 )
+
+
+def _untold(term: Term) -> InvalidGoalError:
+    return InvalidGoalError(
+        f"it is not said where to put it; {EXAMPLE}", term.words.offset, term.words.text
+    )
+
+
+def _unclear(term: Term) -> InvalidGoalError:
+    return InvalidGoalError(
+        f"it is not clear which block '{term.words.text}' is; name it",
+        term.words.offset,
+        term.words.text,
+    )

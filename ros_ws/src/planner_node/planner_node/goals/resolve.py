@@ -1,27 +1,59 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a goal means in the scene that is seen: its names become objects and places."""
+"""What a goal means in the scene that is seen: its names become objects and places.
+
+"every", "no", numbers and "a" become relations of all the objects that fit, and counts of them.
+"""
 
 from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final
 
-from scene_graph import Relation, Stacks, base_index, base_name
+from scene_graph import (
+    ABOVE,
+    COLORS,
+    PREDICATES,
+    SHAPES,
+    UP,
+    Phrase,
+    Relation,
+    Stacks,
+    base_index,
+    base_name,
+)
 
-from ..errors import AmbiguousObjectError, GoalImageError, UnknownObjectError
-from .goal import Goal, complete_goal
-from .parse import EXAMPLE, ParsedRelation, Words
-
-#: Words that fit every object.
-NOUNS: Final = frozenset({"block", "object"})
+from ..errors import AmbiguousObjectError, GoalImageError, InvalidGoalError, UnknownObjectError
+from .clauses import EXAMPLE
+from .goal import Count, Goal, complete_goal
+from .language import (
+    CLEAR,
+    MODALS,
+    MUTE,
+    NOUNS,
+    NUMBERS,
+    OTHER_WORDS,
+    POLITE,
+    SYNONYMS,
+    TAKES,
+    meant,
+)
+from .parse import ParsedRelation
+from .terms import Kind, Term, Words
 
 #: What people call a place, with or without a number; only ``stack0`` … are places.
 _PLACE: Final = re.compile(
     r"(stack|place|position|spot|slot|column|pile|tower|base)s?[ _-]*\d*"
     r"|table|tabletop|floor|ground|desk|surface"
 )
+#: Left out of a name where they were typed wrong.
+_LEFT_OUT: Final = frozenset(MUTE) | {"the"}
+#: No typos of what is in the scene.
+_RIGHT: Final = (
+    frozenset(COLORS) | frozenset(SHAPES) | NOUNS | OTHER_WORDS | CLEAR | TAKES | MUTE
+    | frozenset(NUMBERS)
+)  # fmt: skip
 
 
 def resolve_goal(
@@ -35,55 +67,207 @@ def resolve_goal(
     Raises:
         UnknownObjectError: if a name fits no object and no place of the scene.
         AmbiguousObjectError: if a name fits several.
+        InvalidGoalError: if numbers of blocks are related in a way that is not understood.
     """
     relations: dict[Relation, None] = {}
+    counts: dict[Count, None] = {}
     for item in parsed:
-        subject = resolve_name(item.subject, names, stack_count)
-        object_ = resolve_name(item.object, names, stack_count)
-        if item.phrase.inverse:
-            subject, object_ = object_, subject
-        relations[Relation(subject, item.phrase.predicate.name, object_)] = None
-    return Goal(tuple(relations))
+        subjects = _resolve_term(item.subject, names, stack_count)
+        objects = _resolve_term(item.object, names, stack_count)
+        for meaning in _meanings(item, subjects, objects):
+            if isinstance(meaning, Count):
+                counts[meaning] = None
+            else:
+                relations[meaning] = None
+    return Goal(tuple(relations), tuple(counts))
+
+
+def _resolve_term(term: Term, names: Sequence[str], stack_count: int | None) -> tuple[str, ...]:
+    """The one that is meant, or all that fit where it says how many of them."""
+    if term.kind is Kind.THE:
+        return (resolve_name(term.words, names, stack_count),)
+    left_out = {resolve_name(words, names, stack_count) for words in term.but}
+    return tuple(name for name in _fitting(term.words, names, stack_count) if name not in left_out)
+
+
+def _meanings(
+    item: ParsedRelation, subjects: Sequence[str], objects: Sequence[str]
+) -> Iterator[Relation | Count]:
+    """What is said of two groups, as relations that have to hold and as numbers of them."""
+    subject, object_ = item.subject, item.object
+    if object_.kind is Kind.NO or (object_.kind is Kind.COUNT and object_.most is not None):
+        raise _not_understood(object_)
+    if item.negated and subject.kind in (Kind.NO, Kind.COUNT):
+        raise _not_understood(subject)
+    denied = item.negated or subject.kind is Kind.NO
+    # Who is on no red block is on none of them: every one is looked at by itself.
+    one_object_each = object_.kind is Kind.EVERY or denied
+    one_subject_each = subject.kind in (Kind.EVERY, Kind.NO)
+    found = False
+    for some_objects in [(one,) for one in objects] if one_object_each else [tuple(objects)]:
+        for some_subjects in (
+            [(one,) for one in subjects] if one_subject_each else [tuple(subjects)]
+        ):
+            pairs = [(one, other) for one in some_subjects for other in some_objects]
+            if subject.kind is not Kind.THE or object_.kind is not Kind.THE:
+                # A block that fits both names is not related to itself.
+                pairs = [(one, other) for one, other in pairs if one != other]
+            if pairs:
+                found = True
+                relations = tuple(_related(item, pair, denied) for pair in pairs)
+                yield from _of_group(item, relations, some_subjects, some_objects)
+    if not found:
+        raise InvalidGoalError(
+            "there is nothing that this can be said of", subject.words.offset, subject.words.text
+        )
+
+
+def _related(item: ParsedRelation, pair: tuple[str, str], denied: bool) -> Relation:
+    predicate = item.phrase.predicate
+    nothing = item.subject.kind is Kind.NO and item.subject.words.text in NOUNS
+    if nothing and item.phrase == Phrase(PREDICATES[UP]):
+        # Where nothing is on it, nothing is above it either, which is easier to search for.
+        predicate = PREDICATES[ABOVE]
+    if denied:
+        predicate = PREDICATES.negation(predicate)
+    subject, object_ = reversed(pair) if item.phrase.inverse else pair
+    return Relation(subject, predicate.name, object_)
+
+
+def _of_group(
+    item: ParsedRelation,
+    relations: tuple[Relation, ...],
+    subjects: Sequence[str],
+    objects: Sequence[str],
+) -> Iterator[Relation | Count]:
+    """All of the relations, or as many as the subject or the object says."""
+    subject, object_ = item.subject, item.object
+    least = most = len(relations)
+    if subject.kind is Kind.COUNT and (subject.least, subject.most) != (1, None):
+        if len(objects) > 1:
+            # Of pairs, it is not their number that is said.
+            raise _not_understood(object_)
+        least, most = subject.least, min(most, most if subject.most is None else subject.most)
+    elif Kind.COUNT in (subject.kind, object_.kind):
+        least = 1
+    if least == len(relations):
+        yield from relations
+    else:
+        yield Count(_told(item, subjects, objects, least, most), relations, least, most)
+
+
+def _told(
+    item: ParsedRelation, subjects: Sequence[str], objects: Sequence[str], least: int, most: int
+) -> str:
+    """How a count is told: "exactly 3 of red_box, blue_box, … above stack1"."""
+    number = f"exactly {least}" if least == most else f"at least {least}"
+    if least == 0:
+        number = f"at most {most}"
+    phrase = item.phrase
+    words = phrase.predicate.inverse_phrases[0] if phrase.inverse else phrase.predicate.words
+    return f"{number} of {', '.join(subjects)} {words} {' or '.join(objects)}"
+
+
+def _not_understood(term: Term) -> InvalidGoalError:
+    return InvalidGoalError(
+        "a number of blocks is not understood here; name them one by one",
+        term.words.offset,
+        term.words.text,
+    )
 
 
 def resolve_name(words: Words, names: Sequence[str], stack_count: int | None = None) -> str:
     """The object or base that is meant: by a full name, or any unambiguous part of one.
 
+    A word that is none but is like one, and only one, is taken for it: "gren" for "green".
+
     Raises:
         UnknownObjectError, AmbiguousObjectError: see :func:`resolve_goal`.
     """
-    if (base := words.base) is not None:
+    candidates = _fitting(words, names, stack_count)
+    if len(candidates) > 1:
+        raise AmbiguousObjectError(
+            words.text,
+            candidates,
+            f"at offset {words.offset}: '{words.text}' fits {', '.join(candidates)}; say which",
+        )
+    return candidates[0]
+
+
+def _fitting(words: Words, names: Sequence[str], stack_count: int | None) -> list[str]:
+    """All that a name fits; raises UnknownObjectError where that is nothing."""
+    place = _place_named(words, stack_count)
+    if place is not None:
+        return [place]
+    by_full_name = {name.lower(): name for name in names}
+    known = {part for name in by_full_name for part in name.split("_")}
+    parts = [part for part in re.split(r"[ _-]+", words.text) if part]
+    for mended in (parts, _mended(parts, known)):
+        if "_".join(mended) in by_full_name:
+            return [by_full_name["_".join(mended)]]
+        wanted = {part if part in known else SYNONYMS.get(part, part) for part in mended} - NOUNS
+        candidates = sorted(name for name in names if wanted <= set(name.lower().split("_")))
+        if candidates and mended:
+            return candidates
+    if _PLACE.fullmatch(words.text):
+        raise _unknown_place(words, stack_count)
+    raise _unknown_object(words, parts, names, known)
+
+
+def _mended(parts: Sequence[str], known: set[str]) -> list[str]:
+    """The words of a name without typos, and without those around it that mean nothing.
+
+    In front there may be a verb, behind a "should" or "please", typed wrong; in between nothing is
+    left out.
+    """
+    right = [meant(part, known | NOUNS | SYNONYMS.keys(), _RIGHT) for part in parts]
+    first, last = 0, len(parts)
+    while first < last and right[first] is None and meant(parts[first], _LEFT_OUT, _RIGHT):
+        first += 1
+    while (
+        first < last and right[last - 1] is None and meant(parts[last - 1], MODALS | POLITE, _RIGHT)
+    ):
+        last -= 1
+    kept = [word or part for word, part in zip(right[first:last], parts[first:last])]
+    return [one for part in kept for one in _apart(part, known)]
+
+
+def _apart(part: str, known: set[str]) -> list[str]:
+    """ "redbox" as two words."""
+    for word in known:
+        if part not in known and part.startswith(word) and part.removeprefix(word) in known | NOUNS:
+            return [word, part.removeprefix(word)]
+    return [part]
+
+
+def _place_named(words: Words, stack_count: int | None) -> str | None:
+    base = words.base
+    if base is not None:
         index = base_index(base)
         if stack_count is not None and index is not None and index >= stack_count:
             raise _unknown_place(words, stack_count)
         return base
-    parts = re.split(r"[ _]+", words.text)
-    by_full_name = {name.lower(): name for name in names}
-    full_name = "_".join(parts)
-    if full_name in by_full_name:
-        return by_full_name[full_name]
-    wanted = set(parts) - NOUNS
-    candidates = sorted(name for name in names if wanted <= set(name.lower().split("_")))
-    if len(candidates) == 1:
-        return candidates[0]
-    where = f"at offset {words.offset}"
-    if candidates:
-        raise AmbiguousObjectError(
-            words.text,
-            candidates,
-            f"{where}: '{words.text}' fits {', '.join(candidates)}; say which",
-        )
-    if _PLACE.fullmatch(words.text):
+    side = words.side
+    if side is None:
+        return None
+    if stack_count is None or (side == "middle" and stack_count % 2 == 0):
         raise _unknown_place(words, stack_count)
-    known = sorted(names)
-    listed = f"the scene has {', '.join(known)}" if known else "the scene has no objects"
-    known_parts = {part for name in by_full_name for part in name.split("_")}
-    close = difflib.get_close_matches(full_name, [*by_full_name, *sorted(known_parts)], n=1)
+    return base_name({"left": 0, "middle": stack_count // 2, "right": stack_count - 1}[side])
+
+
+def _unknown_object(
+    words: Words, parts: Sequence[str], names: Sequence[str], known: set[str]
+) -> UnknownObjectError:
+    listed = f"the scene has {', '.join(sorted(names))}" if names else "the scene has no objects"
+    full_name = "_".join(parts)
+    close = difflib.get_close_matches(full_name, [*map(str.lower, names), *sorted(known)], n=1)
     hint = f"; did you mean '{close[0]}'?" if close else ""
-    if parts[0] not in known_parts and known_parts & set(parts[1:]):  # "build red on blue"
+    if parts and parts[0] not in known and known & set(parts[1:]):  # "polish red on blue"
         hint = f"; {EXAMPLE}"
-    raise UnknownObjectError(
-        words.text, known, f"{where}: there is no '{words.text}'; {listed}{hint}"
+    return UnknownObjectError(
+        words.text,
+        sorted(names),
+        f"at offset {words.offset}: there is no '{words.text}'; {listed}{hint}",
     )
 
 

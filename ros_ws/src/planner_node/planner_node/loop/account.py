@@ -7,7 +7,7 @@ from typing import Final
 
 from tamp_runtime.motion_report import SOMETHING, ArmPlace, MotionReport, MotionState
 
-from scene_graph import format_stacks
+from scene_graph import Stacks, format_stacks
 
 from .execution import STALE_SECONDS
 from .plan import Plan
@@ -79,8 +79,19 @@ def describe_difference(plan: Plan, end: MotionReport, seen: Scene) -> str:
     )
     return (
         f"{told}, but the camera sees {format_stacks(seen.stacks)} where "
-        f"{format_stacks(expected[0])} was predicted"
+        f"{format_stacks(expected[0])} was predicted{_aside(seen.stacks, expected[0])}"
     )
+
+
+def _aside(seen: Stacks, predicted: Stacks) -> str:
+    """A hint where all stacks are seen, all as far aside; otherwise an empty string."""
+    count = len(predicted)
+    for by in range(1 - count, count):
+        places = [place - by for place in range(count)]
+        moved = tuple(predicted[place] if 0 <= place < count else () for place in places)
+        if by and seen == moved and sum(map(len, moved)) == sum(map(len, predicted)):
+            return "; all of it is seen aside, is the camera calibrated (extrinsics)?"
+    return ""
 
 
 def account_for(message: str, outcome: Outcome, newest: MotionReport, silence: float | None) -> str:

@@ -8,13 +8,15 @@ from dataclasses import dataclass
 
 from scene_graph import PREDICATES, Relation, Spot, base_index
 
+from ..goals.goal import Count
+
 #: A state of the search: a string a stack, one character an object, from the bottom.
 State = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """One relation of the goal.
+    """One relation of the goal, or a number of relations.
 
     Attributes:
         symbols: the blocks that it is about; only a move of one of them can change its truth.
@@ -46,6 +48,14 @@ class Conditions:
         return Condition(
             "".join(self._symbols.get(name, "") for name in names),
             lambda state: holds(subject(state), object_(state)),
+        )
+
+    def of_count(self, count: Count) -> Condition:
+        """Whether as many of its relations hold as are asked for."""
+        parts = [self.of(relation) for relation in count.relations]
+        return Condition(
+            "".join(part.symbols for part in parts),
+            lambda state: count.least <= sum(part.holds(state) for part in parts) <= count.most,
         )
 
     def _locate(self, name: str) -> Callable[[State], Spot] | None:

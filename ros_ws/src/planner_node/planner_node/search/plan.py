@@ -9,10 +9,12 @@ from itertools import pairwise
 
 from scene_graph import Move, Stacks, apply_move
 
+from ..errors import ContradictoryGoalError, UnreachableError
 from ..goals.contradictions import check_contradictions
 from ..goals.goal import Goal
 from ..validator import validate_plan
 from .algorithms import AUTO, algorithm_named
+from .blame import excluding_parts
 from .limits import DEFAULT_MAX_EXPANSIONS, Limits
 from .state import Problem, State
 
@@ -47,12 +49,21 @@ def make_plan(
 
     Raises:
         InvalidPlanError: the search is defective; nothing of its plan may be used.
-        ContradictoryGoalError: the goal's relations exclude one another.
+        ContradictoryGoalError: parts of the goal exclude one another; they are named.
         UnreachableError, SearchLimitError, SearchCancelledError: see :func:`search`.
     """
     check_contradictions(goal, len(initial))
-    found = search(initial, goal, max_expansions, cancelled, algorithm)
-    validate_plan(initial, goal.relations, found.moves, found.states)
+    try:
+        found = search(initial, goal, max_expansions, cancelled, algorithm)
+    except UnreachableError:
+        parts = excluding_parts(initial, goal, Limits(initial, goal, max_expansions, cancelled))
+        if parts is None:
+            raise
+        raise ContradictoryGoalError(
+            [part.words for part in parts],
+            f"no arrangement of these blocks on {len(initial)} places fulfils all of this",
+        ) from None
+    validate_plan(initial, goal, found.moves, found.states)
     return found
 
 

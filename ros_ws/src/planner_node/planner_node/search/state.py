@@ -47,7 +47,7 @@ class Problem:
         self.target = None if target is None else _encode(target, self.symbols)
 
     def unmet(self, state: State) -> Condition | None:
-        """The first relation of the goal that a state does not fulfil; None: it is a goal."""
+        """The first part of the goal that a state does not fulfil; None: it is a goal."""
         for condition in self._conditions:
             if not condition.holds(state):
                 return condition
@@ -55,11 +55,12 @@ class Problem:
 
     @cached_property
     def _conditions(self) -> tuple[Condition, ...]:
-        """One a relation, the strictest first."""
+        """One a relation or count, the strictest first."""
         height = sum(map(len, self.start))
         conditions = Conditions(self.symbols, len(self.start), height)
         order = sorted(self.goal.relations, key=lambda item: item.predicate != UP)
-        return tuple(conditions.of(item) for item in order)
+        relations = [conditions.of(item) for item in order]
+        return (*relations, *map(conditions.of_count, self.goal.counts))
 
 
 def successors(state: State) -> Iterator[tuple[State, str]]:

@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_graph import ABOVE, LEFT, PREDICATES, UP, Relation, Spot, base_index, base_name
+from scene_graph import ABOVE, LEFT, NOT, PREDICATES, UP, Relation, Spot, base_index, base_name
 
+from ..goals.goal import Count
 from .state import Problem
 
 Flags = NDArray[np.bool_]
@@ -35,8 +36,17 @@ class Exact:
     table: Flags
 
 
+@dataclass(frozen=True)
+class Counted:
+    """Relations of which ``least`` to ``most`` have to hold, which only whole states can tell."""
+
+    relations: tuple[Exact, ...]
+    least: int
+    most: int
+
+
 class Wanted:
-    """The relations of a goal, closed under what follows from them.
+    """The relations of a goal, closed under what follows from them; and its counts, as they are.
 
     Blocks are counted in the order of ``problem.symbols``; behind them come the places.
 
@@ -55,15 +65,18 @@ class Wanted:
         size = self.blocks + self._places
         self._on = np.zeros((size, size), np.bool_)
         self._over = np.zeros((size, size), np.bool_)
+        self._never_over = np.zeros((size, size), np.bool_)
         self._exact: list[Exact] = []
         beside: list[tuple[int, int, Flags]] = []
         self._index = {name: index for index, name in enumerate(problem.symbols)}
         for relation in problem.goal.relations:
             self._read(relation, beside)
+        self._counts = tuple(map(self._counted, problem.goal.counts))
         self._close_over()
         self._close_places(beside)
         if self.possible and not self._over.diagonal().any():
             self.possible = not self._over[self.blocks :].any()
+            self.possible &= not (self._over & self._never_over).any()
         else:
             self.possible = False
         self.linked = self._links()
@@ -122,7 +135,10 @@ class Wanted:
                     mask &= level[row] == level[other_row] + 1
                 if self._over[block, other]:
                     mask &= (stack[row] == stack[other_row]) & (level[row] > level[other_row])
-                elif block < other and not self._over[other, block]:
+                    continue
+                if self._never_over[block, other]:
+                    mask &= (stack[row] != stack[other_row]) | (level[row] < level[other_row])
+                if block < other and not self._over[other, block]:
                     allowed = self._allowed[self._class[block], self._class[other]]
                     if not allowed.all():
                         mask &= allowed[stack[row], stack[other_row]]
@@ -135,10 +151,26 @@ class Wanted:
         places = np.repeat(np.arange(self._places, dtype=np.int8)[:, None], count, axis=1)
         stack = np.concatenate([stack, places])
         level = np.concatenate([level, np.full_like(places, -1)])
-        for item in self._exact:
+
+        def true(item: Exact) -> Flags:
             one, other = item.subject, item.object
-            mask &= item.table[stack[one], level[one] + 1, stack[other], level[other] + 1]
+            return item.table[stack[one], level[one] + 1, stack[other], level[other] + 1]
+
+        for item in self._exact:
+            mask &= true(item)
+        for counted in self._counts:
+            number = sum((true(item).astype(np.int16) for item in counted.relations), start=0)
+            mask &= (number >= counted.least) & (number <= counted.most)
         return mask
+
+    def _counted(self, count: Count) -> Counted:
+        found = []
+        for relation in count.relations:
+            subject, object_ = self._node(relation.subject), self._node(relation.object)
+            # What is not there fulfils nothing.
+            if subject is not None and object_ is not None:
+                found.append(Exact(subject, object_, self._truth(relation, subject, object_)))
+        return Counted(tuple(found), count.least, count.most)
 
     def _node(self, name: str) -> int | None:
         index = base_index(name)
@@ -156,6 +188,8 @@ class Wanted:
         elif relation.predicate == LEFT:
             order = np.tri(self._places, k=-1, dtype=np.bool_).T
             beside.append((subject, object_, order))
+        elif relation.predicate == NOT + ABOVE and max(subject, object_) < self.blocks:
+            self._never_over[subject, object_] = subject != object_
         else:
             table = self._truth(relation, subject, object_)
             # Of the places alone: whether any levels fulfil it.

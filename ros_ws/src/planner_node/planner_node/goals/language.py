@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The words of goals: what may be left out, what stands for what, and what looks like a typo.
+
+Only words that are known are left out: a word that nobody knows ends up in the name of a block, and
+the goal is asked back. That is what keeps a sentence from being read wrong.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Collection
+from typing import Final
+
+from scene_graph import LEFT, UP
+
+#: Verbs that are nouns too, where a number or a phrase follows: "stack 2 below red".
+NOUN_VERBS: Final = frozenset({"place", "stack", "position"})
+#: Ask for the relation that follows.
+VERBS: Final = NOUN_VERBS | {
+    "put", "move", "set", "get", "bring", "lay", "drop", "leave", "keep", "shift", "push",
+    "slide", "transfer", "arrange", "build", "rest", "balance", "sit", "make", "let", "have",
+    "relocate", "stick", "add", "deposit", "carry", "placing", "putting", "moving", "stacking",
+}  # fmt: skip
+#: Pick something up that the next clause calls "it".
+TAKES: Final = frozenset({"take", "grab", "lift", "pick", "fetch", "grasp", "get", "use"})
+#: Say of a block or place that nothing stands on it.
+CLEAR: Final = frozenset({"clear", "empty", "free", "bare", "vacant", "unoccupied", "uncovered"})
+#: Mean nothing for the goal wherever they stand.
+MUTE: Final = VERBS | {
+    "is", "are", "be", "being", "stays", "stay", "sits", "sitting", "stands", "stand",
+    "standing", "rests", "resting", "goes", "go", "going", "lies", "lie", "lying", "placed",
+    "moved", "stacked", "located", "positioned", "should", "shall", "must", "has", "needs",
+    "need", "ought", "would", "will", "wants", "want", "come", "comes", "belongs", "belong",
+    "ends", "gets", "please", "kindly", "i", "we", "you", "me", "us", "like", "love", "prefer",
+    "now", "first", "finally", "also", "just", "simply", "so", "that", "there", "hey", "hi",
+    "hello", "robot", "ok", "okay", "thanks", "thx", "sure", "ensure", "were", "still", "again",
+    "too", "nice", "great", "your", "task", "goal", "next", "could", "wish", "maybe", "perhaps",
+    "somewhere", "sir", "dear", "afterwards", "after", "quickly", "carefully", "gently", "do",
+    "does", "did", "try", "may", "might", "well", "as", "down", "anywhere", "today", "pls",
+    "plz", "pleas",
+}  # fmt: skip
+#: Join relations as a comma does.
+JOINS: Final = frozenset({"and", "adn", "then", "but", "while", "plus", "&"})
+#: Begin a relation after words that name nothing: "build a tower with red on blue".
+OPENINGS: Final = frozenset({"with", "where"})
+#: A clause of nothing else says nothing.
+POLITE: Final = frozenset({
+    "please", "kindly", "hey", "hi", "hello", "robot", "ok", "okay", "thanks", "thx", "dear",
+    "sir", "now", "sure", "so", "well", "pleas", "plz", "pls",
+})  # fmt: skip
+#: Words of a heading, as in "the goal for my class: red on blue"; all else before a colon counts.
+HEADING: Final = frozenset({
+    "pile", "row", "line", "students", "student", "kids", "goal", "task", "tower",
+    "arrangement", "setup", "configuration", "order", "plan", "target", "final", "my", "our",
+    "for", "class", "demo", "experiment", "lesson", "a", "this", "one", "new", "layout",
+    "exercise", "of", "state",
+})  # fmt: skip
+#: In which order a tower or a row is told: the relation of each to the one before, and whether the
+#: one before is its object.
+ORDERS: Final = {
+    "bottom-to-top": (UP, True),
+    "top-to-bottom": (UP, False),
+    "left-to-right": (LEFT, False),
+    "right-to-left": (LEFT, True),
+}
+#: Every block that was not named before.
+OTHERS: Final = {
+    "everything else": "block", "all others": "block", "others": "block", "rest": "block",
+    "all the others": "block", "other ones": "block",
+}  # fmt: skip
+EXCEPT: Final = "except"
+#: The two or three blocks that were named before.
+BOTH: Final = frozenset({"both", "they", "them", "these", "all three", "all four"})
+#: Behind a name and before a relation, looked for there with typos too.
+MODALS: Final = frozenset({
+    "should", "shall", "must", "would", "stands", "standing", "sitting", "placed", "needs",
+    "goes",
+})  # fmt: skip
+ARTICLES: Final = frozenset({"the", "teh", "hte"})
+NEGATION: Final = "not"
+#: Words that hold a negation; with what is left of them.
+SHORT_NEGATIONS: Final = {
+    "dont": "do", "isnt": "is", "shouldnt": "should", "never": "do", "cannot": "could",
+    "mustnt": "must", "without": "do",
+}  # fmt: skip
+#: Several words that stand for others, the longest first; looked for everywhere.
+MERGED: Final = {
+    ("at", "least"): ("at-least",),
+    ("at", "most"): ("at-most",),
+    ("no", "more", "than"): ("at-most",),
+    ("thank", "you"): (),
+    ("at", "end"): (),
+    ("can", "u"): (),
+    ("could", "u"): (),
+    ("so", "kind", "and"): (),
+    ("no", "matter", "where"): (),
+    ("is", "it", "possible", "to", "have"): (),
+    ("would", "it", "be", "possible", "to"): (),
+    ("would", "you", "mind"): (),
+    ("ended", "up"): (),
+    ("make", "it", "so", "that"): ("make",),
+    ("it", "would", "be", "great", "if"): (),
+    ("it", "would", "be", "nice", "if"): (),
+    ("it", "would", "be", "good", "if"): (),
+    ("from", "left", "to", "right"): ("left-to-right",),
+    ("from", "right", "to", "left"): ("right-to-left",),
+    ("except", "for"): ("except",),
+    ("apart", "from"): ("except",),
+    ("from", "bottom", "to", "top"): ("bottom-to-top",),
+    ("bottom", "to", "top"): ("bottom-to-top",),
+    ("from", "top", "to", "bottom"): ("top-to-bottom",),
+    ("top", "to", "bottom"): ("top-to-bottom",),
+    ("at", "lest"): ("at-least",),
+    ("not", "allowed"): ("not",),
+    ("not", "allowed", "to"): ("not",),
+    ("not", "supposed", "to"): ("not",),
+    ("out", "of"): ("not", "in"),
+    ("both", "of", "them"): ("both",),
+    ("them", "both"): ("both",),
+    ("all", "two"): ("both",),
+    ("all", "three", "of", "them"): ("all", "three"),
+    ("in", "end"): (),
+    ("after", "that"): (),
+    ("final", "arrangement"): (),
+    ("final", "state"): (),
+    ("goal", "state"): (),
+    ("ontop",): ("on", "top"),
+    ("can", "you"): (),
+    ("can", "i"): (),
+    ("can", "we"): (),
+    ("can", "be"): ("be",),
+    ("of", "course"): (),
+    ("as", "well"): (),
+    ("for", "me"): (),
+    ("ends", "up"): (),
+    ("end", "up"): (),
+    ("pick", "up"): ("take",),
+    ("lift", "up"): ("take",),
+    ("free", "up"): ("clear",),
+    ("clear", "off"): ("clear",),
+    ("clear", "out"): ("clear",),
+    ("to", "be"): ("be",),
+    ("to", "have"): ("have",),
+    ("to", "see"): ("have",),
+    ("to", "go"): ("be",),
+    ("to", "sit"): ("be",),
+    ("to", "stand"): ("be",),
+    ("has", "to"): ("must",),
+    ("have", "to"): ("must",),
+    ("needs", "to"): ("must",),
+    ("need", "to"): ("must",),
+    ("ought", "to"): ("must",),
+    ("like", "you", "to"): ("like",),
+    ("want", "you", "to"): ("want",),
+    ("need", "you", "to"): ("want",),
+    ("try", "to"): (),
+    ("in", "a", "way", "that"): (),
+    ("so", "kind", "to"): (),
+    ("so", "kind", "as", "to"): (),
+    ("it", "is", "necessary", "that"): (),
+    ("it", "is", "important", "that"): (),
+    ("atleast",): ("at-least",),
+    ("atmost",): ("at-most",),
+    ("such", "that"): (),
+    ("build", "a", "tower"): ("build",),
+    ("make", "a", "tower"): ("build",),
+    ("build", "a", "stack"): ("build",),
+    ("make", "a", "stack"): ("build",),
+}  # fmt: skip
+
+#: Fit every object.
+NOUNS: Final = frozenset({"block", "object", "one", "thing", "piece", "item", "brick"})
+#: Of several, what they are called one by one.
+PLURALS: Final = {
+    "blocks": "block", "objects": "object", "ones": "one", "things": "thing", "pieces": "piece",
+    "items": "item", "bricks": "brick", "boxes": "box", "cubes": "cube", "cylinders": "cylinder",
+    "spheres": "sphere", "balls": "ball", "prisms": "prism", "roofs": "roof", "cuboids": "cuboid",
+}  # fmt: skip
+#: Other words for a shape or a colour, where no object is called so.
+SYNONYMS: Final = {
+    "cube": "box", "cuboid": "box", "ball": "sphere", "roof": "prism", "wedge": "prism",
+    "gray": "grey", "violet": "purple",
+}  # fmt: skip
+NUMBERS: Final = {
+    "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7,
+    "eight": 8, "nine": 9, "ten": 10,
+}  # fmt: skip
+#: Words that are right as they are, so that they are not taken for others with a typo.
+OTHER_WORDS: Final = frozenset({
+    "white", "gold", "golden", "silver", "tan", "teal", "lime", "navy", "beige", "maroon",
+    "olive", "turquoise", "indigo", "amber", "coral", "crimson", "scarlet", "rose", "ruby",
+    "plum", "lilac", "aqua", "azure", "bronze", "copper", "cream", "peach", "salmon", "tin",
+    "bed", "glue", "line", "back", "ink", "pine", "bin", "can", "them", "they", "their",
+    "there", "here", "these", "those",
+})  # fmt: skip
+#: "the left stack", "the middle place"; with what they are called.
+SIDES: Final = {
+    "left": "left", "leftmost": "left", "middle": "middle", "center": "middle", "centre": "middle",
+    "central": "middle", "right": "right", "rightmost": "right",
+}  # fmt: skip
+PLACE_NOUNS: Final = frozenset({
+    "stack", "place", "position", "spot", "slot", "column", "pile", "tower",
+})  # fmt: skip
+
+#: How alike a typo has to be to what was meant, as difflib measures it: two letters exchanged in
+#: four, one missing in four.
+LIKENESS: Final = 0.75
+
+
+def meant(word: str, known: Collection[str], right: Collection[str] = ()) -> str | None:
+    """The one known word that ``word`` is with a typo; None: there is none, or several are as near.
+
+    Args:
+        right: words that are no typos.
+    """
+    if word in known or word in right or len(word) < 3 or not word.isalpha():
+        return word if word in known else None
+    swaps = {word[:at] + word[at + 1] + word[at] + word[at + 2 :] for at in range(len(word) - 1)}
+    if exchanged := swaps & set(known):
+        return exchanged.pop() if len(exchanged) == 1 else None
+    near = difflib.get_close_matches(word, sorted(known), n=2, cutoff=LIKENESS)
+    if len(near) == 2:
+        first, second = (difflib.SequenceMatcher(None, item, word).ratio() for item in near)
+        if first - second < 0.05:
+            return None
+    return near[0] if near else None

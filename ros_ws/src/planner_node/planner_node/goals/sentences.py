@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a text to the words of its clauses: what is written together, and what stands for what."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from ..errors import InvalidGoalError
+from .language import (
+    ARTICLES,
+    HEADING,
+    JOINS,
+    MERGED,
+    MUTE,
+    NEGATION,
+    NUMBERS,
+    OPENINGS,
+    PLACE_NOUNS,
+    POLITE,
+    SHORT_NEGATIONS,
+    SIDES,
+)
+from .terms import Words
+
+_TOKEN: Final = re.compile(
+    r"(?P<word>[^\W_](?:[\w-]|['’](?=\w))*|&)|(?P<end>[.;!?])|(?P<comma>[,:])|(?P<other>\S)"
+)
+
+
+def sentences(text: str) -> Iterator[list[list[Words]]]:
+    """The clauses of every sentence; those that say nothing are left out."""
+    clauses: list[list[Words]] = [[]]
+    for match in [*_TOKEN.finditer(text), None]:
+        if match is not None and match["other"]:
+            raise InvalidGoalError("unexpected character", match.start(), match["other"])
+        if match is None or match["end"]:
+            if kept := [clause for clause in map(_merged, clauses) if not _says_nothing(clause)]:
+                yield _as_tower([part for clause in kept for part in _split_negation(clause)])
+            clauses = [[]]
+        elif match["comma"]:
+            if match["comma"] == ":" and is_heading(_merged(clauses[-1])):
+                clauses.pop()
+            clauses.append([])
+        else:
+            clauses[-1] += _words(match["word"].lower().replace("’", "'"), match.start())
+
+
+def _words(word: str, offset: int) -> list[Words]:
+    """A word as it is read: without articles, and its contractions written out."""
+    if word in ARTICLES:
+        return []
+    if word in SHORT_NEGATIONS:
+        end = offset + len(word)
+        return [Words(SHORT_NEGATIONS[word], offset, end), Words(NEGATION, offset, end)]
+    if word == "lets":
+        return [Words("let", offset)]
+    head, mark, tail = word.partition("'")
+    end = offset + len(word)
+    if not mark:
+        return [Words(word, offset)]
+    if tail == "t":
+        # "can't" and "won't" lose more than the others.
+        verb = {"can": "could", "won": "will"}.get(head, head.removesuffix("n"))
+        return [Words(verb, offset, end), Words(NEGATION, offset, end)]
+    verb = {"d": "would", "ll": "will"}.get(tail, "is")
+    return [Words(head, offset, end), Words(verb, offset, end)]
+
+
+def _merged(words: Sequence[Words]) -> list[Words]:
+    """With several words that stand for others replaced."""
+    result: list[Words] = []
+    index = 0
+    while index < len(words):
+        for length in range(min(5, len(words) - index), 0, -1):
+            texts = tuple(item.text for item in words[index : index + length])
+            if texts in MERGED:
+                whole = words[index : index + length]
+                result += [Words(text, whole[0].offset, end_of(whole)) for text in MERGED[texts]]
+                index += length
+                break
+        else:
+            if side := _side_of_the_row(words[index : index + 3]):
+                result.append(side)
+                index += 1
+            else:
+                result.append(words[index])
+            index += 1
+    return result
+
+
+def _side_of_the_row(words: Sequence[Words]) -> Words | None:
+    """ "left stack" as the name of a place; in "left stack 1", left is a relation."""
+    if len(words) < 2 or words[0].text not in SIDES or words[1].text not in PLACE_NOUNS:
+        return None
+    if len(words) == 3 and (words[2].text.isdigit() or words[2].text in NUMBERS):
+        return None
+    return Words(f"{words[0].text} {words[1].text}", words[0].offset, words[1].stop)
+
+
+def _says_nothing(clause: Sequence[Words]) -> bool:
+    return all(item.text in POLITE for item in clause)
+
+
+def _split(clauses: Sequence[list[Words]]) -> Iterator[list[Words]]:
+    """Once more, at words that join relations."""
+    for clause in clauses:
+        part: list[Words] = []
+        for item in clause:
+            if item.text in OPENINGS and all(word.text in MUTE for word in part):
+                # What is before is no relation, and none is missing.
+                part = []
+            elif item.text not in JOINS:
+                part.append(item)
+            else:
+                if part and not _says_nothing(part):
+                    yield part
+                part = []
+        if part and not _says_nothing(part):
+            yield part
+
+
+def _split_negation(clause: list[Words]) -> Iterator[list[Words]]:
+    """Once more, with "neither … nor" and "not … or" as a list that is denied."""
+    texts = [item.text for item in clause]
+    neither = "neither" in texts and "nor" in texts
+    if not neither and not (NEGATION in texts and "or" in texts[texts.index(NEGATION) :]):
+        yield from _split([clause])
+        return
+    start = texts.index("neither" if neither else NEGATION)
+    denial = Words(NEGATION, clause[start].offset, clause[start].stop)
+    joined = [
+        Words("and", item.offset, item.stop) if item.text in ("nor", "or") else item
+        for item in clause
+        if item.text not in ("neither", NEGATION)
+    ]
+    parts = list(_split([joined]))
+    # The relation is in the last part, and with it what denies it.
+    yield from parts[:-1]
+    yield [denial, *parts[-1]]
+
+
+def _as_tower(clauses: list[list[Words]]) -> list[list[Words]]:
+    """ "in stack 0: red at the bottom, then blue, green on top" as "from bottom to top"."""
+    ends: dict[tuple[str, ...], int] = {
+        ("at", "bottom"): 0,
+        ("on", "bottom"): 0,
+        ("on", "top"): 1,
+        ("at", "top"): 1,
+    }
+    last_two = [tuple(item.text for item in clause[-2:]) for clause in clauses]
+    told = [index for index, texts in enumerate(last_two) if texts in ends]
+    if len(told) != 2 or told[1] != len(clauses) - 1:
+        return clauses
+    first, second = (ends[last_two[index]] for index in told)
+    if first == second:
+        return clauses
+    heading, name = _heading_before(clauses[told[0]][:-2])
+    if told[0] == 1 and not heading:
+        heading = clauses[0]
+    elif told[0] != 0:
+        return clauses
+    order = Words("bottom-to-top" if first == 0 else "top-to-bottom", name[0].offset)
+    middle = [
+        clause[:-2] if texts == ("in", "middle") else clause
+        for clause, texts in zip(clauses[told[0] + 1 : -1], last_two[told[0] + 1 : -1])
+    ]
+    return [[*heading, order], name, *middle, clauses[-1][:-2]]
+
+
+def _heading_before(words: list[Words]) -> tuple[list[Words], list[Words]]:
+    """What is before "with", and what is behind."""
+    for index, item in enumerate(words):
+        if item.text in OPENINGS and index:
+            return words[:index], words[index + 1 :]
+    return [], words
+
+
+def is_heading(words: Sequence[Words]) -> bool:
+    """Whether it only says that a goal follows: "the goal for my class", "build a tower"."""
+    return all(item.text in HEADING | MUTE for item in words)
+
+
+def end_of(words: Sequence[Words]) -> int:
+    """Where the last of them ends in the goal."""
+    return words[-1].stop

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What stands on either side of a relation: a block, a place, or a number of blocks of a kind."""
+
+from __future__ import annotations
+
+import enum
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+from scene_graph import base_name
+
+from ..errors import InvalidGoalError
+from .language import BOTH, EXCEPT, MODALS, NUMBERS, OTHERS, PLACE_NOUNS, PLURALS, SIDES, meant
+
+_BASE: Final = re.compile(r"([a-z]+)[ _]?(?:number |no |nr )?(\d+)")
+
+
+@dataclass(frozen=True)
+class Words:
+    """Some words of the goal in lower case, and where they start and end, counted from 0."""
+
+    text: str
+    offset: int
+    end: int = -1
+
+    @property
+    def stop(self) -> int:
+        """Where they end, where it is not as long as they are."""
+        return self.end if self.end >= 0 else self.offset + len(self.text)
+
+    @property
+    def base(self) -> str | None:
+        """The name of the base that is meant, or None where it is a block or another place."""
+        match = _BASE.fullmatch(_with_digits(self.text))
+        if match is None or meant(match[1], {"stack"}) is None:
+            return None
+        return base_name(int(match[2]))
+
+    @property
+    def side(self) -> str | None:
+        """left, middle or right, where it is the place at that side of the row."""
+        side, _, noun = self.text.partition(" ")
+        return SIDES.get(side) if noun in PLACE_NOUNS else None
+
+    @property
+    def is_place(self) -> bool:
+        """Whether it is a place."""
+        return self.base is not None or self.side is not None
+
+
+class Kind(enum.Enum):
+    """Which of the objects that fit a name are meant."""
+
+    THE = "the one that fits"
+    EVERY = "every one"
+    NO = "none"
+    COUNT = "a number of them"
+
+
+@dataclass(frozen=True)
+class Term:
+    """A name and which of the objects that fit it are meant.
+
+    Attributes:
+        least, most: of a COUNT; most is None where more may be.
+        but: of EVERY, those that are left out.
+        others: of EVERY, those that were named are left out.
+    """
+
+    words: Words
+    kind: Kind = Kind.THE
+    least: int = 1
+    most: int | None = None
+    but: tuple[Words, ...] = ()
+    others: bool = False
+
+    @property
+    def is_place(self) -> bool:
+        """Whether it is a place."""
+        return self.words.is_place
+
+    @property
+    def several(self) -> bool:
+        """Whether more than one object is asked for."""
+        return self.kind is Kind.EVERY or (self.kind is Kind.COUNT and self.least > 1)
+
+
+_EVERY: Final = frozenset({"every", "each", "all"})
+_SOME: Final = frozenset({"a", "an", "any", "some"})
+_NO: Final = frozenset({"no", "none"})
+_ALONE: Final = {
+    "everything": (Kind.EVERY, "block"),
+    "nothing": (Kind.NO, "block"),
+    "none": (Kind.NO, "block"),
+    "something": (Kind.COUNT, "block"),
+    "anything": (Kind.COUNT, "block"),
+    "all": (Kind.EVERY, "block"),
+}
+
+
+def term_of(words: Sequence[Words]) -> Term:
+    """Reads a quantity in front of a name: "three red blocks", "every box", "a cylinder"."""
+    texts = [item.text for item in words]
+    offset = words[0].offset
+    whole = Words(" ".join(texts), offset)
+    if whole.is_place or whole.text in BOTH:
+        return Term(whole)
+    if EXCEPT in texts[1:-1]:
+        at = texts.index(EXCEPT)
+        every = term_of(words[:at])
+        if every.kind is Kind.EVERY and not every.but:
+            return replace(every, but=(term_of(words[at + 1 :]).words,))
+    if whole.text in OTHERS:
+        return Term(Words(OTHERS[whole.text], offset), Kind.EVERY, others=True)
+    if texts[:2] == ["all", "other"]:
+        return replace(term_of([words[0], *words[2:]]), others=True)
+    if len(texts) == 2 and texts[0] in _ALONE and meant(texts[1], MODALS):
+        texts = texts[:1]  # "nothing shoud be on red"
+    if len(texts) == 1 and len(texts[0]) > 5:
+        texts = [meant(texts[0], _ALONE) or texts[0]]
+    if len(texts) == 1 and texts[0] in _ALONE:
+        kind, noun = _ALONE[texts[0]]
+        return Term(Words(noun, offset), kind)
+    if texts[0] == "both":
+        texts = ["all", *texts[1:]]
+    kind, least, most, used = _quantity(texts)
+    if used and used < len(texts) and texts[used] == "of":
+        used += 1
+    rest = texts[used:]
+    if kind is Kind.THE and rest[-1] in PLURALS:
+        kind = Kind.EVERY
+    if not rest:
+        if kind is not Kind.COUNT or texts[0] in _SOME:
+            raise InvalidGoalError("it is not said which block", offset, whole.text)
+        rest = ["block"]
+    start = words[used].offset if used < len(words) else offset
+    name = Words(" ".join(PLURALS.get(text, text) for text in rest), start)
+    return Term(name, kind, least, most)
+
+
+def _quantity(texts: Sequence[str]) -> tuple[Kind, int, int | None, int]:
+    """The kind, the bounds, and how many words say so."""
+    first = texts[0]
+    if first in _EVERY:
+        return Kind.EVERY, 1, None, 1
+    if first in _NO:
+        return Kind.NO, 0, 0, 1
+    if first in _SOME:
+        return Kind.COUNT, 1, None, 1
+    named = {"at-least": (True, False), "at-most": (False, True)}.get(first)
+    used = int(named is not None or first in ("exactly", "only"))
+    if used < len(texts):
+        number = _number(texts[used])
+        if number is not None:
+            low, high = named or (True, True)
+            return Kind.COUNT, number if low else 0, number if high else None, used + 1
+    return Kind.THE, 1, None, 0
+
+
+def _number(text: str) -> int | None:
+    return int(text) if text.isdigit() else NUMBERS.get(text)
+
+
+def _with_digits(text: str) -> str:
+    """ "stack two" as "stack 2"."""
+    head, _, last = text.rpartition(" ")
+    return f"{head} {NUMBERS[last]}" if head and last in NUMBERS else text
