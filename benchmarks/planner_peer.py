@@ -36,19 +36,27 @@ class FastDownward:
             )
         self._script = found[0] / "fast-downward.py"
 
-    def shortest(self, initial: Stacks, goal: Goal) -> tuple[int, float]:
-        """Moves of a shortest plan (A* with LM-cut), and the wall time of its process [s]."""
+    def shortest(
+        self, initial: Stacks, goal: Goal, limit: float | None = None
+    ) -> tuple[int, float] | None:
+        """Moves of a shortest plan (A* with LM-cut), and the wall time of its process [s].
+
+        None: it has not found one within ``limit`` [s].
+        """
         with tempfile.TemporaryDirectory() as folder:
             domain, problem, plan = (Path(folder) / name for name in ("d.pddl", "p.pddl", "plan"))
             domain.write_text(DOMAIN)
             problem.write_text(_problem(initial, goal))
             start = time.perf_counter()
+            within = [] if limit is None else ["--overall-time-limit", f"{limit:.0f}s"]
             done = subprocess.run(
-                [str(self._python), str(self._script), "--plan-file", str(plan), str(domain),
+                [str(self._python), str(self._script), *within, "--plan-file", str(plan), str(domain),
                  str(problem), "--search", "astar(lmcut())"],
                 cwd=folder, capture_output=True, text=True, check=False,
             )  # fmt: skip
             seconds = time.perf_counter() - start
+            if not plan.exists() and limit is not None and seconds >= limit - 1.0:
+                return None
             if not plan.exists():
                 raise RuntimeError(
                     f"Fast Downward found no plan: {done.stdout[-500:]}{done.stderr}"
