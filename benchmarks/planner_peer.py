@@ -50,8 +50,8 @@ class FastDownward:
             start = time.perf_counter()
             within = [] if limit is None else ["--overall-time-limit", f"{limit:.0f}s"]
             done = subprocess.run(
-                [str(self._python), str(self._script), *within, "--plan-file", str(plan), str(domain),
-                 str(problem), "--search", "astar(lmcut())"],
+                [str(self._python), str(self._script), *within, "--plan-file", str(plan),
+                 str(domain), str(problem), "--search", "astar(lmcut())"],
                 cwd=folder, capture_output=True, text=True, check=False,
             )  # fmt: skip
             seconds = time.perf_counter() - start
