@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import random
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Final
 
 from goal_sentences import FIRST_SEED, all_states, holds
@@ -23,6 +23,8 @@ from scene_graph import Stacks
 _COLORS: Final = ("red", "green", "blue", "yellow", "purple")
 _WORDS: Final = {"on": "on", "above": "above", "left": "left of", "beside": "next to"}
 Triple = tuple[str, str, str]
+#: The goal, the scene, and whether an error says of it what is so.
+Refused = tuple[str, Stacks, Callable[[PlannerError], bool]]
 
 
 def refused_rows(count: int) -> list[Row]:
@@ -60,7 +62,7 @@ def _scene(rng: random.Random, places: int) -> tuple[tuple[str, ...], Stacks]:
     return names, rng.choice(all_states(names, places))
 
 
-def _contradictory(rng: random.Random):  # type: ignore[no-untyped-def]
+def _contradictory(rng: random.Random) -> Refused:
     """Relations that no arrangement fulfils; a smallest choice of them is to be named."""
     names, initial = _scene(rng, 3)
     states = all_states(names, 3)
@@ -106,7 +108,7 @@ def _possible(triples: Sequence[Triple], states: Sequence[Stacks]) -> bool:
     return any(holds(meaning, state) for state in states)
 
 
-def _ambiguous(rng: random.Random):  # type: ignore[no-untyped-def]
+def _ambiguous(rng: random.Random) -> Refused:
     """A name that two blocks have; both are to be named."""
     color, *others = rng.sample(_COLORS, 4)
     twins = (f"{color}_box", f"{color}_cylinder")
@@ -125,7 +127,7 @@ def _ambiguous(rng: random.Random):  # type: ignore[no-untyped-def]
     )
 
 
-def _out_of_reach(rng: random.Random):  # type: ignore[no-untyped-def]
+def _out_of_reach(rng: random.Random) -> Refused:
     """On two places blocks cannot pass one another; the search has to prove it."""
     names, initial = _scene(rng, 2)
     order = [*initial[0], *reversed(initial[1])]
@@ -135,8 +137,3 @@ def _out_of_reach(rng: random.Random):  # type: ignore[no-untyped-def]
             break
     goal = str(complete_goal(wanted))
     return goal, initial, lambda error: isinstance(error, UnreachableError)
-
-
-if __name__ == "__main__":
-    for row in refused_rows(500):
-        print(row)

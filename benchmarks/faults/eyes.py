@@ -24,6 +24,7 @@ from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
 from tamp_runtime.service_call import ask
 
 from faults.fault import Phase
+from faults.topics import GROUND_TRUTH
 from scene_graph import SceneGraph, Stacks
 from sim_node.layouts import format_layout
 from tamp_bringup.scene_observer import SimulationError
@@ -50,7 +51,7 @@ class Eyes:
         self._graphs = 0
         self._home: NDArray[np.float64] | None = None
         node = self._node
-        node.create_subscription(SceneGraphMsg, "sim/ground_truth", self._on_truth, LATCHED)
+        node.create_subscription(SceneGraphMsg, GROUND_TRUTH, self._on_truth, LATCHED)
         node.create_subscription(MotionStatus, "motion_status", self._on_status, RELIABLE)
         node.create_subscription(JointState, "joint_states", self._on_joints, SENSOR_DATA, raw=True)
         node.create_subscription(SceneGraphMsg, "scene_graph", self._on_graph, NEWEST, raw=True)

@@ -14,13 +14,12 @@ from faults.askers import Asker
 from faults.eyes import Eyes
 from faults.fault import Parameters, Phase
 from faults.relay import Relays
-from faults.topics import remappings, topics_of
+from faults.topics import GROUND_TRUTH, remappings, topics_of
 from planner_node.cli.client import PlannerClient
 from scene_graph import Stacks
 from sim_node.layouts import format_layout
 from tamp_bringup.processes import NODES, NodeProcesses
 
-GROUND_TRUTH: Final = "sim/ground_truth"
 #: How long a node may take until it is there [s].
 START_SECONDS: Final = 60.0
 

@@ -26,6 +26,7 @@ STATUSES: Final = "motion_status"
 PLAN: Final = "symbolic_plan"
 GRAPH: Final = "scene_graph"
 CLOCK: Final = "clock"
+GROUND_TRUTH: Final = "sim/ground_truth"
 
 CAMERA: Final = (IMAGE, DEPTH, LABELS, INFO)
 
