@@ -61,6 +61,7 @@ def test_a_result_can_be_written() -> None:
         ("red on blue", {"red", "blue"}),
         ("the pink box left of cyan, orange block above pink", {"pink", "cyan", "orange"}),
         ("red_box on stack2", {"red"}),
+        ("nothing on red, three blocks in stack1", {"red"}),
     ],
 )
 def test_fault_17_a_goal_gets_a_scene_that_has_its_blocks(

@@ -9,7 +9,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from planner_node.goals import parse_goal, resolve_goal
+from planner_node.errors import UnknownObjectError
+from planner_node.goals import Kind, parse_goal, resolve_name
 from scene_graph import BASIC_COLORS, BOX, Relation, Stacks, object_name, up_relations
 from sim_node.layouts import MAX_BLOCKS, random_arrangement, random_layout
 
@@ -75,16 +76,16 @@ def scene_for_goal(goal: str, seed: int, blocks: int | None = None) -> tuple[int
     if not goal:
         return seed, blocks or DEFAULT_BLOCKS
     boxes = [object_name(color, BOX) for color in BASIC_COLORS]
-    parsed = parse_goal(goal)
-    for words in (term.words for item in parsed for term in (item.subject, item.object)):
-        known = {*BASIC_COLORS, BOX, "block", "object"}
-        unknown = set(words.text.replace("_", " ").split()) - known
-        if not words.is_place and unknown:
+    terms = [term for item in parse_goal(goal) for term in (item.subject, item.object)]
+    named: set[str] = set()
+    for words in (term.words for term in terms if term.kind is Kind.THE and not term.is_place):
+        try:
+            named.add(resolve_name(words, boxes))
+        except UnknownObjectError as error:
             raise SceneForGoalError(
                 f"'{words.text}' is in no scene of the demo; it has boxes, of the colours "
                 f"{', '.join(BASIC_COLORS)}"
-            )
-    named = resolve_goal(parsed, boxes).names
+            ) from error
     count = blocks or max(DEFAULT_BLOCKS, len(named))
     if len(named) > min(count, MAX_BLOCKS):
         raise SceneForGoalError(

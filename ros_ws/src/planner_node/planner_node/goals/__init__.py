@@ -5,11 +5,12 @@ from .contradictions import check_contradictions, find_contradiction
 from .goal import Count, Goal, complete_goal
 from .parse import ParsedRelation, parse_goal
 from .resolve import goal_of_picture, resolve_goal, resolve_name
-from .terms import Words
+from .terms import Kind, Words
 
 __all__ = [
     "Count",
     "Goal",
+    "Kind",
     "ParsedRelation",
     "Words",
     "check_contradictions",

@@ -64,10 +64,7 @@ ORDERS: Final = {
     "right-to-left": (LEFT, True),
 }
 #: Every block that was not named before.
-OTHERS: Final = {
-    "everything else": "block", "all others": "block", "others": "block", "rest": "block",
-    "all the others": "block", "other ones": "block",
-}  # fmt: skip
+OTHERS: Final = frozenset({"everything else", "all others", "others", "rest", "other ones"})
 EXCEPT: Final = "except"
 #: The two or three blocks that were named before.
 BOTH: Final = frozenset({"both", "they", "them", "these", "all three", "all four"})

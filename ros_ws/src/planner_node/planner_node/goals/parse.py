@@ -187,7 +187,7 @@ class _Reader:
             taken, self.taken = self.taken, None
             return [taken]
         if clause.subject.words.text in BOTH:
-            return self._all_named(clause.subject)
+            return [*named, *self._all_named(clause.subject)]
         return [*named, self._meant(clause.subject, None)]
 
     def _all_named(self, term: Term) -> list[Term]:

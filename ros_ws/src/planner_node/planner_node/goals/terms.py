@@ -91,12 +91,12 @@ _EVERY: Final = frozenset({"every", "each", "all"})
 _SOME: Final = frozenset({"a", "an", "any", "some"})
 _NO: Final = frozenset({"no", "none"})
 _ALONE: Final = {
-    "everything": (Kind.EVERY, "block"),
-    "nothing": (Kind.NO, "block"),
-    "none": (Kind.NO, "block"),
-    "something": (Kind.COUNT, "block"),
-    "anything": (Kind.COUNT, "block"),
-    "all": (Kind.EVERY, "block"),
+    "everything": Kind.EVERY,
+    "nothing": Kind.NO,
+    "none": Kind.NO,
+    "something": Kind.COUNT,
+    "anything": Kind.COUNT,
+    "all": Kind.EVERY,
 }
 
 
@@ -113,7 +113,7 @@ def term_of(words: Sequence[Words]) -> Term:
         if every.kind is Kind.EVERY and not every.but:
             return replace(every, but=(term_of(words[at + 1 :]).words,))
     if whole.text in OTHERS:
-        return Term(Words(OTHERS[whole.text], offset), Kind.EVERY, others=True)
+        return Term(Words("block", offset), Kind.EVERY, others=True)
     if texts[:2] == ["all", "other"]:
         return replace(term_of([words[0], *words[2:]]), others=True)
     if len(texts) == 2 and texts[0] in _ALONE and meant(texts[1], MODALS):
@@ -121,8 +121,7 @@ def term_of(words: Sequence[Words]) -> Term:
     if len(texts) == 1 and len(texts[0]) > 5:
         texts = [meant(texts[0], _ALONE) or texts[0]]
     if len(texts) == 1 and texts[0] in _ALONE:
-        kind, noun = _ALONE[texts[0]]
-        return Term(Words(noun, offset), kind)
+        return Term(Words("block", offset), _ALONE[texts[0]])
     if texts[0] == "both":
         texts = ["all", *texts[1:]]
     kind, least, most, used = _quantity(texts)
