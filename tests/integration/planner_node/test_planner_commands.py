@@ -77,7 +77,7 @@ def test_names_can_be_remapped_on_the_command_line(start: Start) -> None:
     node = start(PACKAGE, "planner_node", "--ros-args", "-r", "__ns:=/lab", "-p", "max_replans:=1")
     code, _, stderr = finish(start(PACKAGE, "plan_to_goal", GOAL, "--ros-args", "-r", "__ns:=/lab"))
     assert code == 1
-    assert "no scene graph has arrived" in stderr
+    assert "nothing has arrived from perception yet" in stderr
     node.send_signal(signal.SIGINT)
     assert finish(node)[0] == 0
 

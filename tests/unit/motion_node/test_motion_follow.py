@@ -115,6 +115,15 @@ def test_an_arm_that_refuses_is_reported(arm: SimulatedArm, follower: Follower) 
     assert caught.value.recoverable
 
 
+def test_a_trajectory_that_comes_late_is_waited_for(arm: SimulatedArm, follower: Follower) -> None:
+    told: list[str] = []
+    follower.on_waiting = told.append
+    arm.lag = 6.0
+    assert follower.follow(two_moves())
+    assert len(arm.sent) == 1
+    assert told == ["the arm has not set out yet", ""]
+
+
 def test_an_arm_that_is_stuck_is_held_where_it_is_and_presses_on(
     arm: SimulatedArm, follower: Follower
 ) -> None:

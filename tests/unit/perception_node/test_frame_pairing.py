@@ -109,6 +109,17 @@ def test_fault_13_a_stream_that_is_stamped_otherwise_is_named() -> None:
     assert pairing.problem(TOPICS).startswith("camera/depth arrives with other stamps than")
 
 
+def test_what_comes_too_late_for_its_set_completes_none_and_is_named() -> None:
+    pairing = FramePairing(STREAMS)
+    for stamp in range(60):  # ten a second
+        now = stamp / 10
+        for stream in ("image", "segmentation"):
+            assert pairing.add(stream, stamp, "message", now) is None
+        assert pairing.add("depth", stamp - 20, "message", now) is None
+    assert pairing.problem(TOPICS).startswith("camera/depth arrives with other stamps than")
+    assert "more than 1 s after" in pairing.problem(TOPICS)
+
+
 def test_stamps_that_start_anew_advance() -> None:
     pairing = FramePairing(STREAMS)
     feed(pairing, 10**12, *STREAMS)

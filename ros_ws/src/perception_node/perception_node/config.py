@@ -25,7 +25,7 @@ class StabilityLimits:
             horizontal axis [m].
     """
 
-    place_tolerance: float = 0.03
+    place_tolerance: float = 0.036
     gap: float = 0.008
     tilt: float = 0.14
     overhang: float = 0.45

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 #: How long incomplete sets are kept, for a detector that takes its time over its labels [s], and
 #: how many: more arrive only if a stream is broken.
-_PATIENCE: Final = 1.0
+PATIENCE: Final = 1.0
 _WAITING: Final = 64
 #: A stream of which so many times less came than of another one is silent; its last message may
 #: have been one of a set that was lost otherwise.
@@ -103,11 +103,13 @@ class FramePairing:
 
     def _forget(self, now: float) -> None:
         """Sets that have waited for too long, and the oldest of too many."""
-        for stamp in sorted(self._waiting):
-            first, _ = self._waiting[stamp]
-            if first >= now - _PATIENCE and len(self._waiting) <= _WAITING:
-                break
-            del self._waiting[stamp]
+        # A stream that is late begins sets that are newer than others and have older stamps.
+        kept = {
+            stamp: waiting
+            for stamp, waiting in self._waiting.items()
+            if waiting[0] >= now - PATIENCE
+        }
+        self._waiting = {stamp: kept[stamp] for stamp in sorted(kept)[-_WAITING:]}
 
     def missing(self) -> tuple[str, ...]:
         """Streams that the waiting sets lack, sorted; empty if none is waiting.
@@ -145,8 +147,8 @@ class FramePairing:
             )
         return (
             f"{named(self.missing() or self._streams)} arrives with other stamps than the other "
-            "images; have the camera stamp what it takes at the same time alike, or set "
-            "pairing_tolerance"
+            f"images, or more than {PATIENCE:g} s after them; have the camera stamp what it takes "
+            "at the same time alike, or set pairing_tolerance"
         )
 
     def _note(self, stream: str, stamp: int) -> None:

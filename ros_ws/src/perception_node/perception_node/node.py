@@ -6,6 +6,7 @@ from __future__ import annotations
 import time
 import traceback
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -40,6 +41,7 @@ except ImportError:  # not among the PyPI packages
 from scene_graph import GraphStatus
 
 from .calibration import Calibration, LensModel
+from .continuity import Continuity
 from .conversions import (
     frame_pose_from_message,
     lens_from_message,
@@ -70,6 +72,8 @@ TOPICS: Final = {
 }
 #: After this long without a complete frame, though images arrive, the reason is published [s].
 SILENCE: Final = 2.0
+#: Pictures that have been the same for so long may be an old one, sent again and again [s].
+FROZEN: Final = 2.0
 
 
 class PerceptionNode(Node):
@@ -112,6 +116,7 @@ class PerceptionNode(Node):
         self._pairing = FramePairing(tuple(self._topics), tolerance)
         self._lens: LensModel | None = None
         self._calibration = Calibration(self._values["rectified"], self._values["world_frame"])
+        self._continuity = Continuity()
         self._status: GraphStatus | None = None
         self._last_image = 0.0
         self._incomplete_since: float | None = None
@@ -222,8 +227,9 @@ class PerceptionNode(Node):
             )
             view = self._calibration.view(self._lens, rgb.shape[1], rgb.shape[0])
             observation = view.observation(rgb, labels, depth)
+            unchanged = self._continuity.seconds_unchanged(frame.stamp, rgb, depth)
             rgb = observation.rgb
-            perceived = self._perception.perceive(observation)
+            perceived = self._perceive(observation, frame.stamp, unchanged)
         except (ImageError, BadImageError) as error:
             perceived = self._perception.rejected(GraphStatus.BAD_IMAGE, str(error))
         except Exception as error:  # a defect must neither stop the node nor go unseen
@@ -237,6 +243,22 @@ class PerceptionNode(Node):
             drawing = draw_scene_graph(rgb, perceived)
             # A picture is in the frame of the camera that took it, not in that of the poses.
             self._drawings.publish(image_from_array(drawing, "rgb8", messages["image"].header))
+
+    def _perceive(self, observation: Observation, stamp: int, unchanged: float) -> Perceived:
+        """Interprets an observation in the light of those before it; see :class:`Continuity`."""
+        perceived = self._perception.perceive(observation)
+        graph = perceived.graph
+        if problem := self._continuity.calibration_problem(observation, graph, stamp):
+            return self._perception.rejected(GraphStatus.BAD_IMAGE, problem)
+        if perceived.status is GraphStatus.CONFIDENT:
+            self._continuity.understand(observation, graph, stamp)
+        elif perceived.status is GraphStatus.OCCLUDED and unchanged >= FROZEN:
+            hint = (
+                f"; or look at the camera: its pictures of the last {unchanged:.0f} s are the same "
+                "to the last bit"
+            )
+            perceived = replace(perceived, message=perceived.message + hint)
+        return perceived
 
     def _pixels(self, stream: str, message: Image | None) -> Any:
         if message is None:

@@ -28,7 +28,7 @@ from .segment import (
     check_segments,
     given_labels,
 )
-from .verdict import grain, judge, judge_empty, judge_not_upright
+from .verdict import Verdict, judge, judge_empty, judge_not_upright, with_grain
 from .visual_module.coordinates import Locator
 
 
@@ -98,11 +98,15 @@ class Perception:
         taken, observation = observation, self._aligned(observation)
         segments = self._segments(observation)
         check_segments(taken.rgb, segments)
+
+        def refused(verdict: Verdict) -> Perceived:
+            return self.rejected(*with_grain(verdict, observation.noise))
+
         if problem := table_problem(observation, segments, places):
             raise BadImageError(problem)
         if len(segments) == 0:
             occlusion = find_occlusion(observation, segments, places, config)
-            return self.rejected(*judge_empty(occlusion, config))
+            return refused(judge_empty(occlusion, config))
         coordinates = self.locator.locate(self.locator.images(observation.rgb, segments))
         try:
             surfaces = measure(observation, segments)
@@ -111,16 +115,14 @@ class Perception:
             parts = [segment.part for segment in segments]
             color = color_names(mean_colors(observation.rgb, parts))[error.index]
             sentence = f"the {color} block {error}"
-            return self.rejected(*judge_not_upright(sentence, occlusion, config))
+            return refused(judge_not_upright(sentence, occlusion, config))
         standing = places.stand(observation, segments, coordinates, centres(surfaces))
         blocks = find_blocks(observation, segments, standing, surfaces)
         occlusion = find_occlusion(observation, segments, places, config, blocks.poses)
         names = name_blocks(observation.rgb, segments, blocks.shapes, standing.stacks)
         graph = build_graph(observation, segments, occlusion, coordinates, standing, blocks, names)
         verdict = judge(graph, occlusion, standing, blocks, names, config)
-        if verdict.status is not GraphStatus.CONFIDENT:
-            verdict = verdict._replace(message=verdict.message + grain(observation.noise))
-        return Perceived(graph, *verdict, segments)
+        return Perceived(graph, *with_grain(verdict, observation.noise), segments)
 
     def _aligned(self, observation: Observation) -> Observation:
         """With edges where they are, where the places are seen and depth can be moved to colour."""

@@ -62,17 +62,17 @@ def judge(
     return Verdict(GraphStatus.CONFIDENT)
 
 
-def grain(noise: float) -> str:
-    """What is added to a refusal of a picture that is too grainy to rely on; else nothing.
+def with_grain(verdict: Verdict, noise: float) -> Verdict:
+    """The verdict; one on a picture that is too grainy to rely on says so.
 
     Args:
-        noise: standard deviation of its channels [0..255].
+        noise: standard deviation of the picture's channels [0..255].
     """
-    if noise < GRAIN:
-        return ""
-    return (
-        f"; the colours of camera/image_raw have a noise of {noise:.0f} grey levels: "
-        "give more light, or less gain"
+    if verdict.status is GraphStatus.CONFIDENT or noise < GRAIN:
+        return verdict
+    return verdict._replace(
+        message=f"{verdict.message}; the colours of camera/image_raw have a noise of {noise:.0f} "
+        "grey levels: give more light, or less gain"
     )
 
 

@@ -18,7 +18,7 @@ from .condition import Grip
 from .errors import ExecutionError
 from .monitor import Monitor, Verdict
 from .objections import objection
-from .patience import Patience
+from .patience import NOTICE_SECONDS, Patience
 from .settings import ExecutionSettings
 
 #: A state older than this does not tell where the arm is now [s].
@@ -173,10 +173,14 @@ class Follower:
         begin, self._trajectory, self.time = self._arm.now(), trajectory, 0.0
         self.under_way, self.let_go_of = True, ""
         self._send(trajectory)
+        told = False
         try:
             while True:
                 state = patience.wait(state)
                 verdict = monitor.update(state)
+                if told is monitor.started and (told or self._arm.now() - begin > NOTICE_SECONDS):
+                    told = not told
+                    self.on_waiting("the arm has not set out yet" if told else "")
                 self.time = monitor.time
                 self._note_grip()
                 on_progress(trajectory, monitor.time)

@@ -47,7 +47,8 @@ class MonitorSettings:
         tracking_tolerance: largest deviation of an arm joint from the path [rad].
         tracking_seconds: for how long it may be exceeded [s].
         max_lag: how far the arm may be behind the trajectory [s].
-        start_seconds: within which the arm has to start, in wall time and by stamps [s].
+        start_seconds: within which the arm has to start, in wall time and by stamps [s]; a
+            trajectory that comes later than that may meet another one.
         goal_tolerance: deviation of every arm joint at the end [rad].
         settle_seconds: within which the end is to be reached after the trajectory's end [s].
         grasp_tolerance: a finger this near to where it was sent holds nothing [m].
@@ -58,7 +59,7 @@ class MonitorSettings:
     tracking_tolerance: float = 0.15
     tracking_seconds: float = 0.3
     max_lag: float = 2.0
-    start_seconds: float = 3.0
+    start_seconds: float = 8.0
     goal_tolerance: float = 0.02
     settle_seconds: float = 3.0
     grasp_tolerance: float = 0.002

@@ -55,6 +55,9 @@ _RIGHT: Final = (
     | frozenset(NUMBERS)
 )  # fmt: skip
 
+#: A name of nothing but these is that of a block, if not of one in the scene.
+_LOOKS: Final = frozenset(COLORS) | frozenset(SHAPES) | NOUNS
+
 
 def resolve_goal(
     parsed: Sequence[ParsedRelation], names: Sequence[str], stack_count: int | None = None
@@ -264,6 +267,11 @@ def _unknown_object(
     hint = f"; did you mean '{close[0]}'?" if close else ""
     if parts and parts[0] not in known and known & set(parts[1:]):  # "polish red on blue"
         hint = f"; {EXAMPLE}"
+    if parts and frozenset(parts) <= _LOOKS:
+        hint = (
+            "; if it is on the table, it stands on no place, or camera/extrinsics is not the "
+            "camera's calibration"
+        )
     return UnknownObjectError(
         words.text,
         sorted(names),

@@ -57,7 +57,8 @@ class SceneWatch:
             sighting, heard = self._newest, self._heard
         if sighting is None:
             raise NoSceneGraphError(
-                "no scene graph has arrived; are the camera (sim_node) and perception_node running?"
+                "nothing has arrived from perception yet; are the camera (sim_node) and "
+                "perception_node running?"
             )
         self._check_time(sighting, after, self._clock.now() - heard)
         scene = scene_in(sighting, self._settings.min_confidence)
