@@ -62,7 +62,7 @@ def test_a_block_that_the_detector_overlooks_is_not_counted_as_seen(
     overlooked = np.where(labels == labels.max(), 0, labels)
     message = labelling_camera.send(with_labels(messages, overlooked))
     assert message.status == SceneGraph.OCCLUDED
-    assert "something that is not a block hides" in message.message
+    assert "something that is not a block on a place hides" in message.message
 
 
 def test_missing_labels_are_told(

@@ -7,7 +7,7 @@ from dataclasses import replace
 import cv2
 import numpy as np
 import pytest
-from seen_worlds import LABELLED, PERCEPTION, observe
+from seen_worlds import LABELLED, PERCEPTION, TOWERS, observe, perceive, put
 
 from perception_node import Observation, Perception
 from scene_graph import GraphStatus
@@ -139,3 +139,14 @@ def test_masks_that_lost_pixels_and_gained_specks_are_read_all_the_same(
         damaged[specks] = rng.choice(np.unique(labels[labels > 0]), np.count_nonzero(specks))
         perceived = LABELLED.perceive(replace(observation, labels=damaged))
         assert perceived.graph.stacks() == LABELLED.perceive(observation).graph.stacks()
+
+
+@BOTH
+@pytest.mark.parametrize("aside", [-0.01, 0.0, 0.01])
+def test_a_block_that_fell_before_a_tower_scatters_no_labels(
+    world: World, perception: Perception, aside: float
+) -> None:
+    world.reset(TOWERS, seed=4)
+    put(world, "green_box", (0.055, aside, -0.09))
+    perceived = perceive(world, perception=perception)
+    assert perceived.status in (GraphStatus.UNSTABLE, GraphStatus.OCCLUDED), perceived.message

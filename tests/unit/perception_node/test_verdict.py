@@ -94,7 +94,7 @@ def test_a_hidden_place_comes_before_every_other_reason() -> None:
     hidden = Occlusion(shares=(0.1, 0.25))
     status, message = verdict(block(0.9), block(), occlusion=hidden, confidence=0.1)
     assert status is GraphStatus.OCCLUDED
-    assert "not a block hides 25% of stack1" in message
+    assert "on a place hides 25% of stack1" in message
     assert judge_empty(hidden, CONFIG) == (status, message)
     tolerant = replace(CONFIG, max_hidden=0.3)
     assert judge_empty(hidden, tolerant).status is GraphStatus.NO_OBJECTS

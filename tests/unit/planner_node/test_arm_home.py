@@ -23,7 +23,7 @@ def leave_the_arm(held: str) -> LoopBench:
 
     def hide() -> None:
         hidden = bench.arm != ArmPlace.HOME
-        message = "something that is not a block hides 30% of stack0"
+        message = "something that is not a block on a place hides 30% of stack0"
         bench.fault = {"status": GraphStatus.OCCLUDED, "message": message} if hidden else {}
         bench.live_on()
 

@@ -97,7 +97,7 @@ class Perception:
         observation.check_values()
         taken, observation = observation, self._aligned(observation)
         segments = self._segments(observation)
-        check_segments(taken.rgb, segments)
+        check_segments(taken.rgb, segments, observation.depth)
 
         def refused(verdict: Verdict) -> Perceived:
             return self.rejected(*with_grain(verdict, observation.noise))

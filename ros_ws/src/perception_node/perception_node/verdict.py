@@ -99,8 +99,9 @@ def occluded(occlusion: Occlusion, max_hidden: float) -> str:
         return ""
     worst = int(np.argmax(occlusion.shares))
     return (
-        f"something that is not a block hides {occlusion.shares[worst]:.0%} of "
-        f"{base_name(worst)}; look again when it is gone"
+        f"something that is not a block on a place hides {occlusion.shares[worst]:.0%} of "
+        f"{base_name(worst)}: a hand, a tool, or a block that stands on no place; look again when "
+        "it is gone"
     )
 
 

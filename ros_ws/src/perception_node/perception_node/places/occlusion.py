@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether something that is not a block hides part of the places."""
+"""Whether something that is not a block on a place hides part of the places."""
 
 from __future__ import annotations
 

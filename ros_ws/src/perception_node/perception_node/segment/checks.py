@@ -16,6 +16,10 @@ from .segments import Mask, Segments
 #: Greatest share of a block's convex outline that may have other blocks' labels: none but at its
 #: edge has, unless labels are scattered. (Pixels that lost their label do little harm.)
 MAX_OTHERS: Final = 0.4
+#: What is nearer to the camera than nearly all of a block by more than this is before it [m].
+BEFORE: Final = 0.005
+#: Percentage of a block's pixels that may be nearer still.
+NEAREST: Final = 10
 #: Greatest middle range of a block's chromaticity (share of a channel in the sum of the three).
 #: One colour has 0.01, with grain of 20 grey levels up to 0.16 where it is dark; noise has 0.24.
 MAX_COLOR_RANGE: Final = 0.2
@@ -30,11 +34,15 @@ EDGE_CONTRAST: Final = 10
 PIXELS: Final = 300
 
 
-def check_segments(rgb: NDArray[np.uint8], segments: Segments) -> None:
+def check_segments(
+    rgb: NDArray[np.uint8], segments: Segments, depth: NDArray[np.floating] | None = None
+) -> None:
     """Refuses masks that are scattered or have no edge in the picture, and blocks of every colour.
 
     Args:
         rgb: shape (height, width, 3).
+        depth: where it is known, blocks that stand before another one cover it; shape (height,
+            width) [m].
 
     Raises:
         BadImageError: names the label, and what to check.
@@ -49,6 +57,9 @@ def check_segments(rgb: NDArray[np.uint8], segments: Segments) -> None:
         ]
         part, outline = segment.part[box], _outline(segment.part[around])
         labels = segments.label_image[around]
+        if depth is not None:
+            before = _stands_before(depth[around], depth[box][part])
+            labels = np.where(before, segment.label, labels)
         if (others := _others(labels, outline, segment.label)) > MAX_OTHERS:
             raise BadImageError(
                 f"{others:.0%} of what label {segment.label} surrounds has other labels: they are "
@@ -59,11 +70,20 @@ def check_segments(rgb: NDArray[np.uint8], segments: Segments) -> None:
                 f"the pixels of label {segment.label} have no common colour; check "
                 f"camera/image_raw, and that it {same_pixels}"
             )
-        if _edge_share(rgb[around], outline, labels == 0) < MIN_EDGE:
+        if _edge_share(rgb[around], outline, segments.label_image[around] == 0) < MIN_EDGE:
             raise BadImageError(
                 f"what label {segment.label} covers has the colour of what is around it; check "
                 f"camera/image_raw, and that it {same_pixels}"
             )
+
+
+def _stands_before(depth: NDArray[np.floating], of_block: NDArray[np.floating]) -> Mask:
+    """Which pixels of a depth picture are before a block whose pixels have other depths [m]."""
+    with np.errstate(invalid="ignore"):
+        known = of_block[of_block > 0.0]
+        if not known.size:
+            return np.zeros(depth.shape, bool)
+        return (depth > 0.0) & (depth < np.percentile(known, NEAREST) - BEFORE)
 
 
 def _outline(part: Mask) -> Mask:
