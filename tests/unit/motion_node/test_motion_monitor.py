@@ -92,7 +92,7 @@ def test_the_speed_of_a_simulation_does_not_matter(trajectory: Trajectory, speed
 def test_an_arm_that_does_not_start_is_noticed(trajectory: Trajectory) -> None:
     verdict, time, _, _ = watch(trajectory, lambda _t: HOME)
     assert verdict is Verdict.NOT_STARTED
-    assert time == pytest.approx(3.0, abs=0.1)
+    assert time == pytest.approx(MonitorSettings().start_seconds, abs=0.1)
 
 
 def test_an_arm_that_gets_stuck_is_noticed(trajectory: Trajectory) -> None:
@@ -199,6 +199,24 @@ def test_an_arm_that_may_have_come_and_gone_unseen_is_not_said_not_to_have_start
         time += 1 / 60
         verdict = monitor.update(ArmState(1000.0 + time, time, HOME, time))
     assert verdict is Verdict.UNSEEN
+
+
+@pytest.mark.parametrize("heard_again", np.arange(0.6, 7.5, 0.3))
+@pytest.mark.parametrize("delay", [0.0, 0.4])
+def test_fault_3_an_arm_that_set_out_unseen_is_found_on_its_way(
+    trajectory: Trajectory, heard_again: float, delay: float
+) -> None:
+    def arm(t: float) -> JointValues:
+        return squeezed(trajectory.sample(max(t - delay, 0.0))[0])
+
+    monitor = Monitor(trajectory, ArmState(1000.0, 0.0, HOME, 0.0), MonitorSettings())
+    verdict, time = Verdict.GOING, heard_again
+    while verdict is Verdict.GOING:
+        verdict = monitor.update(ArmState(1000.0 + time, time, arm(time), 0.0))
+        if heard_again + 2.0 < time < trajectory.duration:
+            assert monitor.time == pytest.approx(time - delay, abs=0.3)
+        time += 1.0 / 60.0
+    assert verdict is Verdict.ARRIVED
 
 
 def test_silence_does_not_make_a_short_disturbance_long(trajectory: Trajectory) -> None:

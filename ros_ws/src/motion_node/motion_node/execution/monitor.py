@@ -135,6 +135,10 @@ class Monitor:
     STARTED_FINGER = 0.001
     #: How much a second away from the expected time counts against a deviation [rad/s].
     TIME_WEIGHT = 0.03
+    #: How much a finger counts that is elsewhere, where the arm set out unseen [rad/m].
+    FINGER_WEIGHT = 10.0
+    #: An arm that was not heard of for longer than this as it set out may be anywhere by now [s].
+    UNSEEN = 0.3
     #: Spacing of the times at which the arm is looked for when it has started [s].
     STEP = 0.02
     #: An arm this far from both ends of a stretch is on its way for certain [rad].
@@ -148,6 +152,7 @@ class Monitor:
         self.lag = 0.0
         self._sent = self._last = state
         self._anchor, self._leapt = state.stamp, False
+        self._stood, self._unseen = state.stamp, False
         arm, fingers = trajectory.positions.furthest(trajectory.positions[0])
         # One that goes nowhere cannot be seen to start.
         self._started = bool(
@@ -158,6 +163,10 @@ class Monitor:
         self._not_closed = _Lasting(settings.finger_seconds)
         self._not_opened = _Lasting(settings.finger_seconds)
         self._travels = _travels(trajectory)
+        # Where each interval ends, and where the block that it is about stops closing fingers.
+        self._ends = np.array([interval.end for interval in trajectory.intervals])
+        grasps = [interval.phase.grasp for interval in trajectory.intervals]
+        self._half_widths = np.array([grasp.width / 2 if grasp else 0.0 for grasp in grasps])
 
     @property
     def block(self) -> Phase | None:
@@ -175,7 +184,7 @@ class Monitor:
         previous, self._last = self._last, state
         if state.stamp < previous.stamp - 0.1:
             return Verdict.CLOCK_WENT_BACK
-        if not self._started and not self._starts(state):
+        if not self._started and not self._starts(state, previous):
             late = (
                 state.received - self._sent.received > self.settings.start_seconds
                 and state.stamp - self._sent.stamp > self.settings.start_seconds
@@ -209,19 +218,30 @@ class Monitor:
                 return Verdict.NOT_ARRIVED
         return Verdict.GOING
 
-    def _starts(self, state: ArmState) -> bool:
-        """Whether the arm or the fingers have left where they were."""
+    def _starts(self, state: ArmState, previous: ArmState) -> bool:
+        """Whether the arm or the fingers have left where they were, as in the state before."""
         self._started = bool(self._left(state.positions, self._sent.positions))
         if self._started:
             # The trajectory needed some time to come this far, and so did these news; look for it
             # from its beginning to where it can be at most.
             begun = self._left(self.trajectory.positions, self.trajectory.positions[0])
             first = float(self.trajectory.times[int(np.argmax(begun))])
-            latest = min(state.stamp - self._sent.stamp, self.trajectory.duration)
-            times = np.append(first, np.arange(first, latest, self.STEP))
-            self._match(state, times, first)
-            self._anchor = max(self._sent.stamp, state.stamp - self.time)
+            self._stood = previous.stamp - first
+            self._unseen = state.stamp - previous.stamp > self.UNSEEN
+            self._search(state, first)
         return self._started
+
+    def _search(self, state: ArmState, earliest: float) -> float:
+        """Finds the arm anywhere on the path that it can have come to; returns its deviation [rad].
+
+        One that was not heard of has most likely set out at once. A hand goes down and up the same
+        way: there the fingers tell.
+        """
+        latest = min(state.stamp - self._stood, self.trajectory.duration)
+        times = np.append(earliest, np.arange(earliest, latest, self.STEP))
+        error = self._match(state, times, latest if self._unseen else earliest)
+        self._anchor = max(self._sent.stamp, state.stamp - self.time)
+        return error
 
     def _left(self, positions: JointValues, start: JointValues) -> NDArray[np.bool_]:
         """Whether positions are away from where the arm started, shape (...,)."""
@@ -236,13 +256,27 @@ class Monitor:
         high = max(low, min(expected + 0.5, latest, self.trajectory.duration))
         count = max(41, int(np.ceil((high - low) / self.STEP)) + 1)
         times = np.append(np.linspace(low, high, count), np.clip(expected, low, high))
-        return self._match(state, times, expected)
+        before, anchor = self.time, self._anchor
+        error = self._match(state, times, expected)
+        if self._unseen and error > self.settings.tracking_tolerance:
+            there = self.time
+            if self._search(state, before) <= self.settings.tracking_tolerance:
+                return 0.0
+            self.time, self._anchor = there, anchor
+        return error
 
     def _match(self, state: ArmState, times: Array, expected: float) -> float:
         """Sets ``time`` to that of ``times`` at which the path is nearest; see ``_locate``."""
         positions, _ = self.trajectory.sample(times)
         errors, _ = positions.furthest(state.positions)
-        best = int(np.argmin(errors + self.TIME_WEIGHT * np.abs(times - expected)))
+        away = self.TIME_WEIGHT * np.abs(times - expected)
+        if self._unseen:
+            asked = np.mean(positions.fingers, axis=1)
+            at = np.minimum(np.searchsorted(self._ends, times), len(self._ends) - 1)
+            stopped = self._half_widths[at]
+            seen = float(np.mean(state.positions.fingers))
+            away += self.FINGER_WEIGHT * np.abs(np.maximum(asked, stopped) - seen)
+        best = int(np.argmin(errors + away))
         self.time = float(times[best])
         return float(errors[best])
 
