@@ -70,6 +70,15 @@ def test_a_camera_that_moves_with_its_calibration_is_believed(degrees: float, as
     assert after(picture(camera, BLOCKS)).calibration_problem(now, NOTHING, 11) == ""
 
 
+@pytest.mark.parametrize("degrees, aside", [(-5.5, -0.094), (5.5, 0.094), (-2.0, -0.035)])
+def test_a_camera_that_turns_back_to_what_it_moved_away_from_is_believed(
+    degrees: float, aside: float
+) -> None:
+    camera = looking_camera()
+    now = picture(turned(camera, degrees, aside), BLOCKS, seed=1)
+    assert after(picture(camera, BLOCKS)).calibration_problem(now, NOTHING, 11) == ""
+
+
 def test_an_arm_that_came_before_the_camera_changes_nothing() -> None:
     camera, hand = looking_camera(), Solid("box", (0.55, 0.05, 0.2), (0.03, 0.05, 0.1))
     continuity = after(picture(camera, BLOCKS))

@@ -25,10 +25,12 @@ _SAME_COLOR: Final = 40
 _OTHER_COLOR: Final = 90
 #: Depths that differ by less are the same, as a share of them.
 _SAME_DEPTH: Final = 0.01
-#: With fewer pixels that tell, as where nothing of what was seen is in view any more, nobody knows.
-_ENOUGH: Final = 20
-#: Of those that tell, so many have to say that the camera moved; all do, where only it moved.
-_MOST: Final = 2 / 3
+#: With fewer pixels that tell, as where nothing of what was seen is in view any more, or the camera
+#: turned back to what it moved away from, nobody knows.
+_ENOUGH: Final = 80
+#: Of those that tell, so many have to say that the camera moved. Where only it moved nearly all do,
+#: and still half of them where it turned back to what it moved away from; else a seventh at most.
+_MANY: Final = 1 / 3
 #: A calibration by which blocks stand so much nearer to their places is the right one [m].
 _NEARER: Final = 0.008
 
@@ -72,7 +74,7 @@ class Continuity:
         if before.rgb.shape != observation.rgb.shape:
             return ""
         told, moved = _moved(before, before.camera, before.depth, observation, camera)
-        if told < _ENOUGH or moved >= _MOST * told:
+        if told < _ENOUGH or moved >= _MANY * told:
             return ""
         aside = _aside(graph)
         if aside is not None and self._aside is not None and aside + _NEARER < self._aside:
