@@ -135,7 +135,7 @@ def test_fault_2_what_was_left_in_the_hand_is_put_down_on_request(bench: Bench) 
     assert_tidy(bench)
 
 
-@pytest.mark.parametrize(("share", "put_downs"), [(0.1, [1]), (0.7, [])])
+@pytest.mark.parametrize(("share", "put_downs"), [(0.1, [1]), (0.5, [])])
 def test_fault_2_a_block_of_which_the_name_is_not_certain_any_more_is_not_put_down(
     bench: Bench, share: float, put_downs: list[int]
 ) -> None:

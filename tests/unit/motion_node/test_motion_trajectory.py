@@ -10,27 +10,12 @@ import pytest
 from simulated_arm import two_moves
 
 from motion_node.phases import HOME, PICK
-from motion_node.timing.limits import JointLimits, shortest_duration, unit_spline
 from motion_node.timing.trajectory import Trajectory
 
 
 @pytest.fixture(scope="module")
 def trajectory() -> Trajectory:
     return two_moves()
-
-
-def test_the_shortest_duration_just_keeps_the_limits() -> None:
-    rng = np.random.default_rng(0)
-    limits = JointLimits(np.full(7, 2.0), np.full(7, 9.0))
-    for _ in range(20):
-        spline = unit_spline(rng.normal(size=(12, 7)))
-        duration = shortest_duration(spline, limits)
-        dense = np.linspace(0, 1, 5001)
-        velocity = np.abs(spline(dense, 1)).max() / duration
-        acceleration = np.abs(spline(dense, 2)).max() / duration**2
-        assert velocity <= 2.0 * (1 + 1e-9)
-        assert acceleration <= 9.0 * (1 + 1e-9)
-        assert velocity > 1.99 or acceleration > 8.99
 
 
 def test_intervals_follow_one_another(trajectory: Trajectory) -> None:

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Paths to trajectories: times within the velocity and acceleration limits.
 
-A phase begins and ends at rest, so each phase is scaled in time on its own. Points are laid on the
-knots of its spline and evenly in between, so that a controller's cubic Hermite interpolation
-reproduces the spline.
+A phase begins and ends at rest, so each phase is timed on its own, all of them at once. A
+controller's cubic Hermite interpolation between the points keeps the limits.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..phases import HOME, Phase, PhasePath
 from ..robots.joints import JointValues
-from .limits import JointLimits, shortest_duration, unit_spline
+from .fastest import JointLimits, fastest
 from .trajectory import Interval, Trajectory
 
 Array = NDArray[np.float64]
@@ -30,7 +29,8 @@ class TimingSettings:
         velocity_scale, acceleration_scale: shares of the joints' limits that may be used.
         close_seconds, open_seconds: standing still while the fingers close or open [s].
         finger_speed: of each finger joint [m/s].
-        point_seconds: longest time between points of the trajectory [s].
+        parts: points of the trajectory for each step of a path.
+        point_seconds: longest time between points while the fingers move [s].
     """
 
     velocity_scale: float = 0.9
@@ -38,6 +38,7 @@ class TimingSettings:
     close_seconds: float = 0.5
     open_seconds: float = 0.4
     finger_speed: float = 0.1
+    parts: int = 6
     point_seconds: float = 0.02
 
 
@@ -52,15 +53,10 @@ class _Points:
         self.velocities: list[JointValues] = []
         self.intervals: list[Interval] = []
 
-    def travel(self, path: PhasePath, limits: JointLimits, fingers: Array) -> None:
+    def travel(self, phase: Phase, times: Array, arm: Array, speed: Array, fingers: Array) -> None:
         """The arm follows a path, the fingers stay; the end point is left to what follows."""
-        spline = unit_spline(path.q)
-        duration = shortest_duration(spline, limits)
-        intervals = len(path.q) - 1
-        parts = max(1, int(np.ceil(duration / intervals / self.settings.point_seconds)))
-        u = np.arange(intervals * parts) / (intervals * parts)
-        self._add(u * duration, spline(u), spline(u, 1) / duration, fingers)
-        self._close(path.phase, duration, gripping=False)
+        self._add(times[:-1], arm[:-1], speed[:-1], fingers)
+        self._close(phase, float(times[-1]), gripping=False)
 
     def grip(self, phase: Phase, q: Array, fingers: Array, target: Array, seconds: float) -> None:
         """The arm stands still while the fingers go to a target at their speed, smoothly."""
@@ -114,6 +110,7 @@ def time_paths(
     """The trajectory through solved phases, with the fingers' closing and opening at the switches.
 
     Args:
+        paths: all of as many steps.
         fingers: positions of the two finger joints at the start, shape (2,) [m].
         open_first: finger position to go to before the arm moves [m]; None: they stay.
     """
@@ -128,8 +125,9 @@ def time_paths(
         target = np.full(2, open_first)
         points.grip(first.phase, first.q[0], now, target, settings.open_seconds)
         now = target
-    for path in paths:
-        points.travel(path, scaled, now)
+    timed = fastest(np.stack([path.q for path in paths]), scaled, settings.parts)
+    for path, times, arm, speed in zip(paths, timed.times, timed.positions, timed.velocities):
+        points.travel(path.phase, times, arm, speed, now)
         if path.phase.kind != HOME:
             target = np.full(2, path.phase.grip)
             closing = float(target[0]) < float(now[0])

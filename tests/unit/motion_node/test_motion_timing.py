@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The fastest timing of paths: within the limits everywhere, and as fast as they allow.
+
+The oracles: an independent sampler, and the same problem as one linear program after the other,
+solved by scipy's.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
+from scipy.optimize import linprog
+
+from motion_node.timing.fastest import SHORTEST, JointLimits, fastest
+
+Array = NDArray[np.float64]
+
+
+def some_paths(seed: int, joints: int, count: int, steps: int = 14) -> Array:
+    """Smooth random ways from one configuration to another that begin and end slowly."""
+    rng = np.random.default_rng(seed)
+    share = np.linspace(0.0, 1.0, steps + 1)[:, None]
+    ways = rng.normal(0.0, 1.0, (count, 1, joints)) * share**2 * (3.0 - 2.0 * share)
+    for waves in (1, 2):
+        sizes = rng.normal(0.0, 0.5 / waves, (count, 1, joints))
+        ways = ways + sizes * np.sin(np.pi * share) ** 2 * np.cos(np.pi * waves * share)
+    return ways
+
+
+def some_limits(seed: int, joints: int) -> JointLimits:
+    rng = np.random.default_rng([seed, 1])
+    return JointLimits(rng.uniform(1.0, 3.0, joints), rng.uniform(4.0, 15.0, joints))
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 7), st.integers(1, 8))
+def test_the_limits_hold_everywhere_between_two_rests(seed: int, joints: int, parts: int) -> None:
+    q, limits = some_paths(seed, joints, 3), some_limits(seed, joints)
+    timed = fastest(q, limits, parts)
+    for path, times, positions, velocities in zip(
+        q, timed.times, timed.positions, timed.velocities
+    ):
+        assert times[0] == 0.0 and (np.diff(times) > 0.0).all()
+        np.testing.assert_allclose(positions[::parts], path, atol=1e-12)
+        assert not velocities[0].any() and not velocities[-1].round(12).any()
+        cubic = CubicHermiteSpline(times, positions, velocities)
+        dense = np.linspace(0.0, times[-1], 4000)
+        assert (np.abs(cubic(dense, 1)) <= limits.velocity * (1 + 1e-6)).all()
+        assert (np.abs(cubic(dense, 2)) <= limits.acceleration * (1 + 1e-6)).all()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_it_is_as_fast_as_one_linear_program_after_the_other(seed: int) -> None:
+    """TOPP-RA as it is published, with limits at both ends of each step."""
+    q, limits, parts = some_paths(seed, 4, 1), some_limits(seed, 4), 6
+    duration = fastest(q, limits, parts).times[0, -1]
+    least = _by_linear_programs(q[0], limits, parts)
+    assert least * (1 - 1e-6) <= duration <= 1.03 * least  # which looks at grid points only
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 7))
+def test_twice_the_way_is_not_faster_and_a_finer_grid_is_not_slower(seed: int, joints: int) -> None:
+    q, limits = some_paths(seed, joints, 2), some_limits(seed, joints)
+    once, twice = (fastest(q * scale, limits, 8).times[:, -1] for scale in (1.0, 2.0))
+    assert (twice >= once * (1 - 1e-9)).all()
+    assert (fastest(q, limits, 16).times[:, -1] <= once * 1.02).all()
+
+
+def test_one_joint_goes_at_full_acceleration_and_at_full_speed() -> None:
+    limits = JointLimits(np.array([2.0]), np.array([5.0]))
+    way = 3.0
+    share = np.linspace(0.0, 1.0, 15)
+    q = way * (share**2 * (3.0 - 2.0 * share))[None, :, None]
+    least = way / 2.0 + 2.0 / 5.0  # a trapezoid
+    assert least <= fastest(q, limits, 16).times[0, -1] <= 1.02 * least
+
+
+def test_a_path_that_goes_nowhere_takes_a_moment() -> None:
+    timed = fastest(np.ones((1, 15, 7)), some_limits(0, 7), 6)
+    assert timed.times[0, -1] == pytest.approx(SHORTEST)
+    assert not timed.velocities.any()
+
+
+def _by_linear_programs(q: Array, limits: JointLimits, parts: int) -> float:
+    steps = (len(q) - 1) * parts
+    spline = CubicSpline(np.linspace(0.0, 1.0, len(q)), q, bc_type="clamped")
+    grid, step = np.linspace(0.0, 1.0, steps + 1), 1.0 / steps
+    slope, bend = spline(grid, 1), spline(grid, 2)
+    with np.errstate(divide="ignore"):
+        most = np.minimum((limits.velocity / np.abs(slope)).min(axis=1) ** 2, SHORTEST**-2.0)
+
+    def rows(index: int) -> tuple[Array, Array]:
+        """Of (x, s̈): both ends' accelerations, and x at the next point."""
+        ends = [
+            np.stack([bend[index], slope[index]], axis=1),
+            np.stack([bend[index + 1], slope[index + 1] + 2 * step * bend[index + 1]], axis=1),
+        ]
+        matrix = np.concatenate([*ends, *(-end for end in ends)])
+        return matrix, np.tile(limits.acceleration, 4)
+
+    def extreme(index: int, highest: float, objective: list[float], x: tuple[float, float]) -> Array:
+        matrix, bounds = rows(index)
+        matrix = np.concatenate([matrix, [[1.0, 2 * step], [-1.0, -2 * step]]])
+        bounds = np.concatenate([bounds, [highest, 0.0]])
+        found = linprog(objective, matrix, bounds, bounds=[x, (None, None)])
+        assert found.success
+        return np.asarray(found.x)
+
+    can = most.copy()
+    for index in range(steps - 1, -1, -1):
+        can[index] = extreme(index, can[index + 1], [-1.0, 0.0], (0.0, most[index]))[0]
+    squares = [can[0]]
+    for index in range(steps):
+        x = squares[-1]
+        best = extreme(index, can[index + 1], [0.0, -1.0], (x * (1 - 1e-9), x))
+        squares.append(max(0.0, x + 2 * step * best[1]))
+    speeds = np.sqrt(squares)
+    return float((2 * step / (speeds[1:] + speeds[:-1])).sum())
