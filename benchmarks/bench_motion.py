@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``make bench-motion``: how quickly motions are found, and how quick they are.
+
+Random scenes and plans (seeds from 1000), without a node. Beside rai's KOMO and TOPP-RA, in one run
+and in turns, where ``PEERS=`` names a virtual environment with ``robotic`` and ``toppra``; without
+it these rows are left out. Writes ``benchmarks/results/motion.json``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import pybullet_data
+from motion_peers import Peers
+from motion_scenes import BASES, random_heights, random_moves, scene
+from numpy.typing import NDArray
+from results_file import Row, print_rows, quick, write_result
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
+from tqdm import tqdm
+
+from motion_node.errors import InfeasibleError
+from motion_node.planner import Motion, MotionPlanner
+from motion_node.timing.fastest import JointLimits
+from scene_graph import Move, SceneGraph
+
+Array = NDArray[np.float64]
+
+FIRST_SEED: Final = 1000
+BLOCKS: Final = 6
+#: Moves, required median [s], and required ratio to rai.
+LENGTHS: Final = ((1, 0.010, None), (3, 0.020, 0.06), (6, 0.035, 0.06), (12, 0.070, 0.06))
+#: Of these moves durations are looked at.
+TIMED: Final = 6
+#: Points of TOPP-RA's grid: more change its durations by less than one in a hundred.
+GRID: Final = 225
+#: Between two samples of a trajectory [s].
+SAMPLING: Final = 0.001
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A scene with moves in it."""
+
+    heights: tuple[int, ...]
+    graph: SceneGraph
+    moves: list[Move]
+
+
+def random_problem(moves: int, seed: int) -> Problem:
+    """Blocks a little beside their places and turned, and a random walk."""
+    rng = np.random.default_rng([seed, moves])
+    heights = random_heights(rng, BLOCKS)
+    graph = scene(heights, rng)
+    return Problem(heights, graph, random_moves(graph, moves, rng))
+
+
+def solve(planner: MotionPlanner, problem: Problem) -> Motion | None:
+    """The motion from home with open fingers; None if there is none."""
+    fingers = np.full(2, planner.arm.gripper.finger_travel)
+    try:
+        return planner.solve(problem.graph, problem.moves, planner.model.home, fingers)
+    except InfeasibleError:
+        return None
+
+
+def time_rows(planner: MotionPlanner, peers: Peers | None, count: int) -> list[Row]:
+    """How long it takes to find motions, alone and beside rai."""
+    rows, failed, total = list[Row](), 0, 0
+    for moves, required, ratio in LENGTHS:
+        ours, ratios, infeasible = list[float](), list[float](), 0
+        for seed in tqdm(range(FIRST_SEED, FIRST_SEED + count), desc=f"{moves} moves"):
+            problem = random_problem(moves, seed)
+            motion = solve(planner, problem)
+            total += 1
+            if motion is None:
+                failed += 1
+                continue
+            ours.append(motion.seconds)
+            if peers is None:
+                continue
+            seconds, feasible = peers.komo(problem.heights, BASES, problem.moves, collisions=True)
+            infeasible += not feasible
+            ratios.append(motion.seconds / seconds)
+        name = f"{moves} moves" if moves > 1 else "1 move"
+        rows.append(
+            Row(name, "time to find the motion, median", statistics.median(ours), "s", len(ours),
+                (min(ours), max(ours)), f"<= {required}",
+                note="all clearances; alone, without a node")
+        )  # fmt: skip
+        if ratios:
+            rows.append(
+                Row(name, "time ratio to rai's KOMO, median", statistics.median(ratios), "",
+                    len(ratios), (min(ratios), max(ratios)),
+                    None if ratio is None else f"<= {ratio}",
+                    note="theirs with arm and table kept from colliding, and without the blocks; "
+                    f"{infeasible} of {len(ratios)} of theirs infeasible")
+            )  # fmt: skip
+    return [
+        *rows,
+        Row("all of these", "plans without a motion", failed, "", total, required="== 0"),
+    ]
+
+
+def duration_rows(planner: MotionPlanner, peers: Peers | None, count: int) -> list[Row]:
+    """How long the arm takes for six moves, and what limits it keeps."""
+    settings = planner.timing
+    limits = JointLimits(
+        settings.velocity_scale * planner.limits.velocity,
+        settings.acceleration_scale * planner.limits.acceleration,
+    )
+    whole, moving, stretched, ratios = list[float](), list[float](), list[float](), list[float]()
+    beyond = jumps = restless = 0
+    for seed in tqdm(range(FIRST_SEED, FIRST_SEED + count), desc="durations"):
+        motion = solve(planner, random_problem(TIMED, seed))
+        if motion is None:
+            continue
+        trajectory = motion.trajectory
+        q = np.stack([path.q for path in motion.paths])
+        whole.append(trajectory.duration)
+        moving.append(sum(i.end - i.start for i in trajectory.intervals if not i.gripping))
+        stretched.append(sum(stretched_duration(path, limits) for path in q))
+        if peers is not None:
+            ratios.append(moving[-1] / peers.toppra(q, limits, GRID))
+        speeds, accelerations = sampled(motion)
+        beyond += bool(
+            (np.abs(speeds) > limits.velocity * (1 + 1e-6)).any()
+            or (np.abs(accelerations) > limits.acceleration * (1 + 1e-6)).any()
+        )
+        restless += bool(np.abs(speeds[[0, -1]]).max() > 1e-9)
+        jumps += bool((np.abs(np.diff(accelerations, axis=0)) > 0.2 * limits.acceleration).any())
+    name, done = f"{TIMED} moves", len(whole)
+    rows = [
+        Row(name, "duration, fingers included, median", statistics.median(whole), "s", done,
+            (min(whole), max(whole)), "<= 13"),
+        Row(name, "of this the arm moves, median", statistics.median(moving), "s", done,
+            (min(moving), max(moving))),
+        Row(name, "the same if each way were only stretched in time, median",
+            statistics.median(stretched), "s", done, (min(stretched), max(stretched)),
+            note="the trivial way to keep limits: that of this project before"),
+        Row(name, "trajectories beyond a limit of velocity or acceleration", beyond, "", done,
+            required="== 0", note="sampled every millisecond by scipy"),
+        Row(name, "trajectories that do not begin and end at rest", restless, "", done,
+            required="== 0"),
+        Row(name, "trajectories whose acceleration jumps: no jerk is bounded", jumps, "", done,
+            required="== 0"),
+    ]  # fmt: skip
+    if ratios:
+        rows.append(
+            Row(name, "duration of the ways as a multiple of TOPP-RA's, median",
+                statistics.median(ratios), "", done, (min(ratios), max(ratios)), "<= 1.03",
+                note="the same paths and limits, its grid of 225 points; it keeps limits at grid "
+                "points, ours in between too")
+        )  # fmt: skip
+    return rows
+
+
+def stretched_duration(q: Array, limits: JointLimits) -> float:
+    """Of one path whose steps all take the same time, as little as the limits allow [s]."""
+    spline = CubicSpline(np.linspace(0.0, 1.0, len(q)), q, bc_type="clamped")
+    dense = np.linspace(0.0, 1.0, 1000)
+    speed = (np.abs(spline(dense, 1)).max(axis=0) / limits.velocity).max()
+    acceleration = (np.abs(spline(dense, 2)).max(axis=0) / limits.acceleration).max()
+    return float(max(speed, np.sqrt(acceleration)))
+
+
+def sampled(motion: Motion) -> tuple[Array, Array]:
+    """Velocities and accelerations of the arm as a controller interpolates them, densely."""
+    trajectory = motion.trajectory
+    cubic = CubicHermiteSpline(
+        trajectory.times, trajectory.positions.arm, trajectory.velocities.arm
+    )
+    times = np.append(np.arange(0.0, trajectory.duration, SAMPLING), trajectory.duration)
+    return cubic(times, 1), cubic(times, 2)
+
+
+def prepared_planner(lengths: Sequence[int]) -> MotionPlanner:
+    """With its problems built, as a node that has been running has them."""
+    urdf = Path(pybullet_data.getDataPath()) / "franka_panda" / "panda.urdf"
+    planner = MotionPlanner(urdf.read_text())
+    for moves in lengths:
+        planner.prepare(len(BASES), moves)
+        solve(planner, random_problem(moves, 0))
+    return planner
+
+
+def main() -> None:
+    """Measures, prints and writes."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--peers", type=Path, help="virtual environment with robotic and toppra")
+    arguments = parser.parse_args()
+    try:
+        peers = Peers(arguments.peers) if arguments.peers else None
+    except FileNotFoundError as error:
+        parser.error(str(error))
+    start, count = time.perf_counter(), 5 if quick() else 50
+    try:
+        planner = prepared_planner([moves for moves, *_ in LENGTHS])
+        rows = time_rows(planner, peers, count) + duration_rows(planner, peers, count)
+    finally:
+        if peers is not None:
+            peers.close()
+    if peers is None:
+        print("rai and TOPP-RA are left out; PEERS=FOLDER names an environment with both")
+    print_rows(rows)
+    path = write_result("motion", "make bench-motion PEERS=/path/to/venv", rows,
+                        time.perf_counter() - start)  # fmt: skip
+    print(f"written to {path}")
+
+
+if __name__ == "__main__":
+    main()
