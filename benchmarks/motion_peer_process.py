@@ -94,7 +94,9 @@ def komo_seconds(request: dict[str, Any]) -> dict[str, Any]:
         for switch in (pick, place):
             komo.addObjective([switch], ry.FS.qItself, [], ry.OT.eq, [1e0], [], 1)
             around = [switch - 0.2, switch + 0.2]
-            komo.addObjective(around, ry.FS.vectorZ, ["l_gripper"], ry.OT.sos, [1e0], [0.0, 0.0, 1.0])
+            komo.addObjective(
+                around, ry.FS.vectorZ, ["l_gripper"], ry.OT.sos, [1e0], [0.0, 0.0, 1.0]
+            )
     komo.addObjective([phases], ry.FS.qItself, [], ry.OT.eq, [1e1], home)
     komo.addObjective([], ry.FS.jointLimits, [], ry.OT.ineq, [1e0])
     if request["collisions"]:

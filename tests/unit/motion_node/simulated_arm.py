@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 
 HOME_Q = np.zeros(2)
 OPEN, HALF_BLOCK, SQUEEZED = 0.04, 0.0225, 0.0125
+BESIDE = HALF_BLOCK + TimingSettings().finger_room
 BLOCKS = ("green_box", "blue_box")
 #: Where the arm takes the first block, puts it down, takes the second one, puts it down [rad].
 SWITCHES = np.array([(0.8, -0.5), (-0.7, -0.4), (0.3, -0.6), (-0.7, -0.3)])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from motion_scenes import scene
 from sensor_msgs.msg import JointState
-from simulated_arm import SWITCHES, two_moves
+from simulated_arm import BESIDE, SWITCHES, two_moves
 from std_msgs.msg import Header
 from tamp_interfaces.msg import Move as MoveMessage
 from tamp_interfaces.msg import SymbolicPlan
@@ -59,7 +59,7 @@ def test_a_trajectory_names_all_joints_and_starts_at_once() -> None:
     times = [p.time_from_start.sec + 1e-9 * p.time_from_start.nanosec for p in message.points]
     np.testing.assert_allclose(times, trajectory.times, atol=1e-8)
     taken = int(np.argmin(np.abs(trajectory.times - trajectory.intervals[1].start)))
-    np.testing.assert_allclose(message.points[taken].positions, [*SWITCHES[0], 0.04, 0.04])
+    np.testing.assert_allclose(message.points[taken].positions, [*SWITCHES[0], BESIDE, BESIDE])
     moving = message.points[3]
     np.testing.assert_allclose(moving.velocities[:2], trajectory.velocities.arm[3])
     assert list(moving.velocities[2:]) == [0.0, 0.0]

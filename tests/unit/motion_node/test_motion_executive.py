@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from executive_bench import Bench
 from simulated_arm import (
+    BESIDE,
     BLOCKS,
     OPEN,
     PLAN,
@@ -82,7 +83,7 @@ def test_a_block_in_hand_is_put_down_before_the_arm_brakes(bench: Bench) -> None
     bench.when(PLACE, 0, bench.stop.set)
     bench.carry_out()
     brake, joints = bench.arm.sent[1]
-    assert joints.fingers.min() > 0.9 * OPEN
+    assert joints.fingers.min() > 0.95 * BESIDE
     assert not brake.velocities.arm[-1].any()
     placed = two_moves().sample(two_moves().intervals[3].end)[0]
     np.testing.assert_allclose(joints.arm, placed.arm, atol=0.01)
@@ -104,7 +105,7 @@ def test_a_stop_while_the_fingers_move_leaves_the_block_standing_and_the_hand_op
     assert bench.planner.ways_home == [moves_done]
     assert bench.planner.rises == [] == bench.planner.put_downs
     assert len(bench.arm.sent) == 3  # the plan, the brake, the way home
-    assert bench.arm.sent[-1][1].fingers.min() > 0.99 * OPEN
+    assert bench.arm.sent[-1][1].fingers.min() > 0.99 * BESIDE
     assert bench.arm.at_home()
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from executive_bench import Bench
-from simulated_arm import BLOCKS, HALF_BLOCK, OPEN, SQUEEZED, SWITCHES, two_moves
+from simulated_arm import BESIDE, BLOCKS, HALF_BLOCK, OPEN, SQUEEZED, SWITCHES, two_moves
 from tamp_runtime.motion_report import SOMETHING, ArmPlace, MotionReason, MotionState
 
 from motion_node.errors import InfeasibleError
@@ -46,7 +46,7 @@ def assert_put_down_where_it_was_to_go(bench: Bench, move: int) -> None:
     opening = next(i for i in way.intervals if i.gripping)
     there, _ = way.sample(np.array([opening.start, opening.end]))
     np.testing.assert_allclose(there.arm, [SWITCHES[2 * move + 1]] * 2, atol=1e-6)
-    np.testing.assert_allclose(there.fingers[:, 0], [SQUEEZED, OPEN], atol=1e-6)
+    np.testing.assert_allclose(there.fingers[:, 0], [SQUEEZED, BESIDE], atol=1e-6)
     np.testing.assert_allclose(way.sample(0.0)[0].fingers, SQUEEZED, atol=1e-6)
 
 

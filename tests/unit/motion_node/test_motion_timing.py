@@ -40,10 +40,8 @@ def some_limits(seed: int, joints: int) -> JointLimits:
 @given(st.integers(0, 10**6), st.integers(1, 7), st.integers(1, 8))
 def test_the_limits_hold_everywhere_between_two_rests(seed: int, joints: int, parts: int) -> None:
     q, limits = some_paths(seed, joints, 3), some_limits(seed, joints)
-    timed = fastest(q, limits, parts)
-    for path, times, positions, velocities in zip(
-        q, timed.times, timed.positions, timed.velocities
-    ):
+    for path, way in zip(q, fastest(q, limits, parts)):
+        times, positions, velocities = way.times, way.positions, way.velocities
         assert times[0] == 0.0 and (np.diff(times) > 0.0).all()
         np.testing.assert_allclose(positions[::parts], path, atol=1e-12)
         assert not velocities[0].any() and not velocities[-1].round(12).any()
@@ -57,7 +55,7 @@ def test_the_limits_hold_everywhere_between_two_rests(seed: int, joints: int, pa
 def test_it_is_as_fast_as_one_linear_program_after_the_other(seed: int) -> None:
     """TOPP-RA as it is published, with limits at both ends of each step."""
     q, limits, parts = some_paths(seed, 4, 1), some_limits(seed, 4), 6
-    duration = fastest(q, limits, parts).times[0, -1]
+    duration = fastest(q, limits, parts)[0].duration
     least = _by_linear_programs(q[0], limits, parts)
     assert least * (1 - 1e-6) <= duration <= 1.03 * least  # which looks at grid points only
 
@@ -66,9 +64,10 @@ def test_it_is_as_fast_as_one_linear_program_after_the_other(seed: int) -> None:
 @given(st.integers(0, 10**6), st.integers(1, 7))
 def test_twice_the_way_is_not_faster_and_a_finer_grid_is_not_slower(seed: int, joints: int) -> None:
     q, limits = some_paths(seed, joints, 2), some_limits(seed, joints)
-    once, twice = (fastest(q * scale, limits, 8).times[:, -1] for scale in (1.0, 2.0))
-    assert (twice >= once * (1 - 1e-9)).all()
-    assert (fastest(q, limits, 16).times[:, -1] <= once * 1.02).all()
+    ways = [fastest(q, limits, 8), fastest(2.0 * q, limits, 8), fastest(q, limits, 16)]
+    for once, twice, finer in zip(*ways):
+        assert twice.duration >= once.duration * (1 - 1e-9)
+        assert finer.duration <= once.duration * 1.02
 
 
 def test_one_joint_goes_at_full_acceleration_and_at_full_speed() -> None:
@@ -77,13 +76,13 @@ def test_one_joint_goes_at_full_acceleration_and_at_full_speed() -> None:
     share = np.linspace(0.0, 1.0, 15)
     q = way * (share**2 * (3.0 - 2.0 * share))[None, :, None]
     least = way / 2.0 + 2.0 / 5.0  # a trapezoid
-    assert least <= fastest(q, limits, 16).times[0, -1] <= 1.02 * least
+    assert least <= fastest(q, limits, 16)[0].duration <= 1.02 * least
 
 
 def test_a_path_that_goes_nowhere_takes_a_moment() -> None:
-    timed = fastest(np.ones((1, 15, 7)), some_limits(0, 7), 6)
-    assert timed.times[0, -1] == pytest.approx(SHORTEST)
-    assert not timed.velocities.any()
+    (way,) = fastest(np.ones((1, 15, 7)), some_limits(0, 7), 6)
+    assert way.duration == pytest.approx(SHORTEST)
+    assert not way.velocities.any()
 
 
 def _by_linear_programs(q: Array, limits: JointLimits, parts: int) -> float:
@@ -103,7 +102,9 @@ def _by_linear_programs(q: Array, limits: JointLimits, parts: int) -> float:
         matrix = np.concatenate([*ends, *(-end for end in ends)])
         return matrix, np.tile(limits.acceleration, 4)
 
-    def extreme(index: int, highest: float, objective: list[float], x: tuple[float, float]) -> Array:
+    def extreme(
+        index: int, highest: float, objective: list[float], x: tuple[float, float]
+    ) -> Array:
         matrix, bounds = rows(index)
         matrix = np.concatenate([matrix, [[1.0, 2 * step], [-1.0, -2 * step]]])
         bounds = np.concatenate([bounds, [highest, 0.0]])

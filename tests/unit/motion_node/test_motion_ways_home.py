@@ -94,7 +94,8 @@ def test_fault_2_a_block_is_put_down_from_anywhere_on_its_way(
         )
         pressing = interval.phase.tool.finger
         np.testing.assert_allclose(down.sample(np.linspace(0, opening.start))[0].fingers, pressing)
-        np.testing.assert_allclose(there.fingers[1], OPEN)
+        np.testing.assert_allclose(there.fingers[1], EDGE / 2 + planner.timing.finger_room)
+        np.testing.assert_allclose(down.positions.fingers[-1], OPEN)
 
 
 @pytest.mark.parametrize("known", [True, False])

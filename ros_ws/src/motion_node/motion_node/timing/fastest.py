@@ -37,20 +37,25 @@ class JointLimits:
 
 
 @dataclass(frozen=True)
-class TimedPaths:
-    """Paths in time, at rest at both ends; cubic in between (Hermite).
+class Way:
+    """A path in time, at rest at both ends; cubic in between (Hermite).
 
     Attributes:
-        times: shape (paths, points), each from 0 [s].
-        positions, velocities: shape (paths, points, n) [rad, rad/s].
+        times: shape (points,), from 0 [s].
+        positions, velocities: shape (points, n) [rad, rad/s].
     """
 
     times: Array
     positions: Array
     velocities: Array
 
+    @property
+    def duration(self) -> float:
+        """From rest to rest [s]."""
+        return float(self.times[-1])
 
-def fastest(q: Array, limits: JointLimits, parts: int) -> TimedPaths:
+
+def fastest(q: Array, limits: JointLimits, parts: int) -> list[Way]:
     """The fastest timing of the clamped cubic splines through configurations.
 
     Args:
@@ -68,7 +73,7 @@ def fastest(q: Array, limits: JointLimits, parts: int) -> TimedPaths:
     slower = _slower(positions, velocities, durations, limits)
     times = np.zeros(squares.shape)
     np.cumsum(slower * durations, axis=1, out=times[:, 1:])
-    return TimedPaths(times, positions, velocities / slower[:, :, None])
+    return [Way(*way) for way in zip(times, positions, velocities / slower[:, :, None])]
 
 
 def _fastest_squares(slopes: Array, bends: Array, limits: JointLimits, step: float) -> Array:

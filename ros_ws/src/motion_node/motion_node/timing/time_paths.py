@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..phases import HOME, Phase, PhasePath
+from ..phases import HOME, PICK, PLACE, Phase, PhasePath
 from ..robots.joints import JointValues
-from .fastest import JointLimits, fastest
+from .fastest import JointLimits, Way, fastest
 from .trajectory import Interval, Trajectory
 
 Array = NDArray[np.float64]
@@ -27,17 +27,21 @@ class TimingSettings:
 
     Attributes:
         velocity_scale, acceleration_scale: shares of the joints' limits that may be used.
-        close_seconds, open_seconds: standing still while the fingers close or open [s].
-        finger_speed: of each finger joint [m/s].
+        close_seconds, open_seconds: standing still at least, while the fingers close on a block or
+            let go of it [s].
+        finger_speed: most of each finger joint [m/s].
+        finger_room: between each finger and a block when the hand arrives at it or leaves it; what
+            fingers open farther they open and close on the way [m].
         parts: points of the trajectory for each step of a path.
         point_seconds: longest time between points while the fingers move [s].
     """
 
     velocity_scale: float = 0.9
     acceleration_scale: float = 0.7
-    close_seconds: float = 0.5
-    open_seconds: float = 0.4
+    close_seconds: float = 0.30
+    open_seconds: float = 0.25
     finger_speed: float = 0.1
+    finger_room: float = 0.01
     parts: int = 6
     point_seconds: float = 0.02
 
@@ -53,30 +57,44 @@ class _Points:
         self.velocities: list[JointValues] = []
         self.intervals: list[Interval] = []
 
-    def travel(self, phase: Phase, times: Array, arm: Array, speed: Array, fingers: Array) -> None:
-        """The arm follows a path, the fingers stay; the end point is left to what follows."""
-        self._add(times[:-1], arm[:-1], speed[:-1], fingers)
-        self._close(phase, float(times[-1]), gripping=False)
+    def travel(self, phase: Phase, way: Way, fingers: Array, wide: Array, end: Array) -> None:
+        """The arm follows a path; the end point is left to what follows.
+
+        Args:
+            fingers, wide, end: where the fingers are at its beginning, on the way and at its end.
+        """
+        times, last = way.times[:-1, None], way.duration
+        # They stop and start at points: in between a cubic would run beyond.
+        opened = np.searchsorted(way.times, self.ramp(fingers, wide))
+        opening = way.times[min(opened, len(times))]
+        closes = np.searchsorted(way.times, last - self.ramp(wide, end), side="right") - 1
+        closing = last - way.times[max(closes, 0)]
+        wider, widening = _smooth(times / opening)
+        nearer, nearing = _smooth((times - last + closing) / closing)
+        positions = fingers + (wide - fingers) * wider + (end - wide) * nearer
+        rate = (wide - fingers) * widening / opening + (end - wide) * nearing / closing
+        self._add(way.times[:-1], way.positions[:-1], way.velocities[:-1], positions, rate)
+        self._close(phase, last, gripping=False)
 
     def grip(self, phase: Phase, q: Array, fingers: Array, target: Array, seconds: float) -> None:
         """The arm stands still while the fingers go to a target at their speed, smoothly."""
-        distance = float(np.abs(target - fingers).max())
-        ramp = min(max(1.5 * distance / self.settings.finger_speed, 0.1), seconds * 0.95)
+        ramp = self.ramp(fingers, target)
         count = max(2, int(np.ceil(ramp / self.settings.point_seconds)))
         u = np.arange(count + 1)[:, None] / count
-        moving = fingers + (target - fingers) * (3 - 2 * u) * u**2
-        rate = (target - fingers) * 6 * u * (1 - u) / ramp
+        share, rate = _smooth(u)
         arm = np.tile(q, (count + 1, 1))
-        self._add(u[:, 0] * ramp, arm, np.zeros_like(arm), moving, rate)
-        self._close(phase, seconds, gripping=True)
+        moving = fingers + (target - fingers) * share
+        self._add(u[:, 0] * ramp, arm, np.zeros_like(arm), moving, (target - fingers) * rate / ramp)
+        self._close(phase, max(seconds, ramp / 0.95), gripping=True)
 
-    def _add(
-        self, times: Array, arm: Array, speed: Array, fingers: Array, rate: Array | None = None
-    ) -> None:
-        shape = (len(times), 2)
+    def ramp(self, fingers: Array, target: Array) -> float:
+        """How long fingers take from one position to another [s]."""
+        return max(1.5 * float(np.abs(target - fingers).max()) / self.settings.finger_speed, 0.1)
+
+    def _add(self, times: Array, arm: Array, speed: Array, fingers: Array, rate: Array) -> None:
         self.times.append(self.now + times)
-        self.positions.append(JointValues(arm, np.broadcast_to(fingers, shape)))
-        self.velocities.append(JointValues(speed, np.zeros(shape) if rate is None else rate))
+        self.positions.append(JointValues(arm, fingers))
+        self.velocities.append(JointValues(speed, rate))
 
     def _close(self, phase: Phase, seconds: float, gripping: bool) -> None:
         self.intervals.append(Interval(self.now, self.now + seconds, phase, gripping))
@@ -84,13 +102,19 @@ class _Points:
 
     def finish(self, q: Array, fingers: Array) -> Trajectory:
         """The trajectory, ending at rest there."""
-        self._add(np.zeros(1), q[None], np.zeros((1, len(q))), fingers)
+        self._add(np.zeros(1), q[None], np.zeros((1, len(q))), fingers[None], np.zeros((1, 2)))
         return Trajectory(
             np.concatenate(self.times),
             _joined(self.positions),
             _joined(self.velocities),
             tuple(self.intervals),
         )
+
+
+def _smooth(share: Array) -> tuple[Array, Array]:
+    """From 0 to 1, at rest at both ends, and its derivative."""
+    u = np.clip(share, 0.0, 1.0)
+    return (3 - 2 * u) * u**2, 6 * u * (1 - u)
 
 
 def _joined(parts: Sequence[JointValues]) -> JointValues:
@@ -109,6 +133,9 @@ def time_paths(
 ) -> Trajectory:
     """The trajectory through solved phases, with the fingers' closing and opening at the switches.
 
+    The arm stands still for what happens at a block only: fingers open fully as the hand leaves,
+    and come near the next block as it arrives there.
+
     Args:
         paths: all of as many steps.
         fingers: positions of the two finger joints at the start, shape (2,) [m].
@@ -125,13 +152,34 @@ def time_paths(
         target = np.full(2, open_first)
         points.grip(first.phase, first.q[0], now, target, settings.open_seconds)
         now = target
-    timed = fastest(np.stack([path.q for path in paths]), scaled, settings.parts)
-    for path, times, arm, speed in zip(paths, timed.times, timed.positions, timed.velocities):
-        points.travel(path.phase, times, arm, speed, now)
-        if path.phase.kind != HOME:
-            target = np.full(2, path.phase.grip)
-            closing = float(target[0]) < float(now[0])
-            seconds = settings.close_seconds if closing else settings.open_seconds
-            points.grip(path.phase, path.q[-1], now, target, seconds)
-            now = target
+    ways = fastest(np.stack([path.q for path in paths]), scaled, settings.parts)
+    for index, (path, way) in enumerate(zip(paths, ways)):
+        phase = path.phase
+        wide = now if phase.tool.held or index == 0 else np.full(2, phase.tool.finger)
+        end = wide
+        if phase.kind == PICK:
+            end = np.minimum(wide, _around(phase, settings))
+            if points.ramp(now, wide) + points.ramp(wide, end) > 0.9 * way.duration:
+                end = wide
+        points.travel(phase, way, now, wide, end)
+        now = end
+        if phase.kind == HOME:
+            continue
+        target, seconds = np.full(2, phase.grip), settings.close_seconds
+        if phase.kind == PLACE:
+            seconds = settings.open_seconds
+            around = np.minimum(target, _around(phase, settings))
+            if (
+                index + 1 < len(ways)
+                and points.ramp(around, target) < 0.9 * ways[index + 1].duration
+            ):
+                target = around
+        points.grip(phase, path.q[-1], now, target, seconds)
+        now = target
     return points.finish(paths[-1].q[-1], now)
+
+
+def _around(phase: Phase, settings: TimingSettings) -> float:
+    """Where each finger stands beside the block of a phase without touching it [m]."""
+    assert phase.grasp is not None
+    return phase.grasp.width / 2 + settings.finger_room
