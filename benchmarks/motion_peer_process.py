@@ -72,7 +72,7 @@ def komo_seconds(request: dict[str, Any]) -> dict[str, Any]:
             )
             stacks[-1].append(name)
         config.addFrame(f"place{place}").setPosition(world(x, y, 0.0))
-    home = config.getJointState()
+    home, down = config.getJointState(), [0.0, 0.0, 1.0]
     moves = request["moves"]
     phases = 2 * len(moves) + 1
     begin = time.perf_counter()
@@ -88,9 +88,9 @@ def komo_seconds(request: dict[str, Any]) -> dict[str, Any]:
         komo.addModeSwitch([pick, place], ry.SY.stable, ["l_gripper", block], True)
         komo.addModeSwitch([place, -1.0], ry.SY.stable, ["table", block], False)
         komo.addObjective([pick], ry.FS.positionDiff, ["l_gripper", block], ry.OT.eq, [1e2])
-        komo.addObjective([pick], ry.FS.vectorZ, ["l_gripper"], ry.OT.eq, [1e1], [0.0, 0.0, 1.0])
+        komo.addObjective([pick], ry.FS.vectorZ, ["l_gripper"], ry.OT.eq, [1e1], down)
         komo.addObjective([place], ry.FS.position, [block], ry.OT.eq, [1e2], goal)
-        komo.addObjective([place], ry.FS.vectorZ, ["l_gripper"], ry.OT.eq, [1e1], [0.0, 0.0, 1.0])
+        komo.addObjective([place], ry.FS.vectorZ, ["l_gripper"], ry.OT.eq, [1e1], down)
         for switch in (pick, place):
             komo.addObjective([switch], ry.FS.qItself, [], ry.OT.eq, [1e0], [], 1)
             around = [switch - 0.2, switch + 0.2]

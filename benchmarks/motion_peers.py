@@ -17,7 +17,7 @@ from motion_node.timing.fastest import JointLimits
 from scene_graph import Move
 
 PROCESS: Final = Path(__file__).parent / "motion_peer_process.py"
-#: The least of what rai's wheel loads; Debian packages: liblapack3 libglfw3 libglew2.2 libfreetype6.
+#: rai's loads what Debian calls liblapack3, libglfw3, libglew2.2 and libfreetype6.
 WHEELS: Final = ("robotic", "toppra")
 
 

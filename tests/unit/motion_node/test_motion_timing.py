@@ -102,9 +102,7 @@ def _by_linear_programs(q: Array, limits: JointLimits, parts: int) -> float:
         matrix = np.concatenate([*ends, *(-end for end in ends)])
         return matrix, np.tile(limits.acceleration, 4)
 
-    def extreme(
-        index: int, highest: float, objective: list[float], x: tuple[float, float]
-    ) -> Array:
+    def extreme(index: int, highest: float, objective: Array, x: tuple[float, float]) -> Array:
         matrix, bounds = rows(index)
         matrix = np.concatenate([matrix, [[1.0, 2 * step], [-1.0, -2 * step]]])
         bounds = np.concatenate([bounds, [highest, 0.0]])
@@ -114,11 +112,11 @@ def _by_linear_programs(q: Array, limits: JointLimits, parts: int) -> float:
 
     can = most.copy()
     for index in range(steps - 1, -1, -1):
-        can[index] = extreme(index, can[index + 1], [-1.0, 0.0], (0.0, most[index]))[0]
+        can[index] = extreme(index, can[index + 1], np.array([-1.0, 0.0]), (0.0, most[index]))[0]
     squares = [can[0]]
     for index in range(steps):
         x = squares[-1]
-        best = extreme(index, can[index + 1], [0.0, -1.0], (x * (1 - 1e-9), x))
+        best = extreme(index, can[index + 1], np.array([0.0, -1.0]), (x * (1 - 1e-9), x))
         squares.append(max(0.0, x + 2 * step * best[1]))
     speeds = np.sqrt(squares)
     return float((2 * step / (speeds[1:] + speeds[:-1])).sum())

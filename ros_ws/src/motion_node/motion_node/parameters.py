@@ -140,12 +140,16 @@ PARAMETERS = (
     _spec(
         "close_seconds",
         _TIMING.close_seconds,
-        "Standing still while the fingers close [s].",
+        "Standing still at least, while the fingers close on a block [s].",
         0.2,
         5.0,
     ),
     _spec(
-        "open_seconds", _TIMING.open_seconds, "Standing still while the fingers open [s].", 0.2, 5.0
+        "open_seconds",
+        _TIMING.open_seconds,
+        "Standing still at least, while the fingers let go of a block [s].",
+        0.2,
+        5.0,
     ),
     _spec(
         "tracking_tolerance",

@@ -65,10 +65,10 @@ class _Points:
         """
         times, last = way.times[:-1, None], way.duration
         # They stop and start at points: in between a cubic would run beyond.
-        opened = np.searchsorted(way.times, self.ramp(fingers, wide))
-        opening = way.times[min(opened, len(times))]
-        closes = np.searchsorted(way.times, last - self.ramp(wide, end), side="right") - 1
-        closing = last - way.times[max(closes, 0)]
+        opened = int(np.searchsorted(way.times, self.ramp(fingers, wide)))
+        opening = float(way.times[min(opened, len(times))])
+        closes = int(np.searchsorted(way.times, last - self.ramp(wide, end), side="right")) - 1
+        closing = last - float(way.times[max(closes, 0)])
         wider, widening = _smooth(times / opening)
         nearer, nearing = _smooth((times - last + closing) / closing)
         positions = fingers + (wide - fingers) * wider + (end - wide) * nearer
