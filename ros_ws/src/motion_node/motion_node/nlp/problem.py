@@ -19,6 +19,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from .compiled import compiled
 from .program import TOLERANCE, Instance, Program
 from .rows import Demand, Rows
 from .solver import SolverFactory
@@ -160,8 +161,10 @@ class KOrderProblem:
                 ["triu_hess_gamma_x_x"],
             )
 
-        jacobian = ca.Function(
-            "nlp_jac_g", [z, p], [g, ca.vertcat(*jacobians)], ["x", "p"], ["g", "jac_g_x"]
+        jacobian = compiled(
+            ca.Function(
+                "nlp_jac_g", [z, p], [g, ca.vertcat(*jacobians)], ["x", "p"], ["g", "jac_g_x"]
+            )
         )
         return Program(z, p, cost, g, self._hessian, jacobian, make_curvature)
 
