@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from scipy.optimize import linprog
 
-from motion_node.timing.fastest import SHORTEST, JointLimits, fastest
+from motion_node.timing.fastest import SHORTEST, JointLimits, TimeGrid, fastest
 
 Array = NDArray[np.float64]
 
@@ -40,34 +40,53 @@ def some_limits(seed: int, joints: int) -> JointLimits:
 @given(st.integers(0, 10**6), st.integers(1, 7), st.integers(1, 8))
 def test_the_limits_hold_everywhere_between_two_rests(seed: int, joints: int, parts: int) -> None:
     q, limits = some_paths(seed, joints, 3), some_limits(seed, joints)
-    for path, way in zip(q, fastest(q, limits, parts)):
+    for path, way in zip(q, fastest(q, limits, TimeGrid(parts))):
         times, positions, velocities = way.times, way.positions, way.velocities
         assert times[0] == 0.0 and (np.diff(times) > 0.0).all()
-        np.testing.assert_allclose(positions[::parts], path, atol=1e-12)
-        assert not velocities[0].any() and not velocities[-1].round(12).any()
+        np.testing.assert_allclose(positions[[0, -1]], path[[0, -1]], atol=1e-9)
+        spline = CubicSpline(np.linspace(0.0, 1.0, len(path)), path, bc_type="clamped")
+        along = spline(np.linspace(0.0, 1.0, 3000))
+        for position in positions[::10]:
+            assert np.abs(along - position).max(axis=1).min() < 2e-3
+        assert not velocities[[0, -1]].round(9).any()
         cubic = CubicHermiteSpline(times, positions, velocities)
         dense = np.linspace(0.0, times[-1], 4000)
         assert (np.abs(cubic(dense, 1)) <= limits.velocity * (1 + 1e-6)).all()
         assert (np.abs(cubic(dense, 2)) <= limits.acceleration * (1 + 1e-6)).all()
 
 
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 7))
+def test_accelerations_do_not_jump(seed: int, joints: int) -> None:
+    q, limits, grid = some_paths(seed, joints, 2), some_limits(seed, joints), TimeGrid()
+    jerk = 2.0 * limits.acceleration / grid.smooth_seconds
+    for way in fastest(q, limits, grid):
+        acceleration = CubicHermiteSpline(way.times, way.positions, way.velocities).derivative(2)
+        times = np.arange(0.0, way.duration, 0.001)
+        changes = np.abs(acceleration(times + grid.seconds) - acceleration(times))
+        assert (changes[times < way.duration - grid.seconds] <= 1.5 * jerk * grid.seconds).all()
+        # At its ends it is at rest.
+        assert (np.abs(acceleration([0.0, way.duration])) <= 2.0 * jerk * grid.seconds).all()
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_it_is_as_fast_as_one_linear_program_after_the_other(seed: int) -> None:
-    """TOPP-RA as it is published, with limits at both ends of each step."""
-    q, limits, parts = some_paths(seed, 4, 1), some_limits(seed, 4), 6
-    duration = fastest(q, limits, parts)[0].duration
-    least = _by_linear_programs(q[0], limits, parts)
-    assert least * (1 - 1e-6) <= duration <= 1.03 * least  # which looks at grid points only
+    """TOPP-RA as it is published; ours keeps the limits between grid points, too, and jerk."""
+    q, limits, grid = some_paths(seed, 4, 1), some_limits(seed, 4), TimeGrid()
+    duration = fastest(q, limits, grid)[0].duration
+    least = _by_linear_programs(q[0], limits, grid.parts)
+    assert least * (1 - 1e-6) <= duration <= 1.05 * least + grid.smooth_seconds
 
 
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 10**6), st.integers(1, 7))
 def test_twice_the_way_is_not_faster_and_a_finer_grid_is_not_slower(seed: int, joints: int) -> None:
     q, limits = some_paths(seed, joints, 2), some_limits(seed, joints)
-    ways = [fastest(q, limits, 8), fastest(2.0 * q, limits, 8), fastest(q, limits, 16)]
+    coarse, fine = TimeGrid(8), TimeGrid(16)
+    ways = [fastest(q, limits, coarse), fastest(2.0 * q, limits, coarse), fastest(q, limits, fine)]
     for once, twice, finer in zip(*ways):
         assert twice.duration >= once.duration * (1 - 1e-9)
-        assert finer.duration <= once.duration * 1.02
+        assert finer.duration <= once.duration * 1.05
 
 
 def test_one_joint_goes_at_full_acceleration_and_at_full_speed() -> None:
@@ -76,12 +95,16 @@ def test_one_joint_goes_at_full_acceleration_and_at_full_speed() -> None:
     share = np.linspace(0.0, 1.0, 15)
     q = way * (share**2 * (3.0 - 2.0 * share))[None, :, None]
     least = way / 2.0 + 2.0 / 5.0  # a trapezoid
-    assert least <= fastest(q, limits, 16)[0].duration <= 1.02 * least
+    assert (
+        least
+        <= fastest(q, limits, TimeGrid(16))[0].duration
+        <= 1.03 * (least + TimeGrid().smooth_seconds)
+    )
 
 
 def test_a_path_that_goes_nowhere_takes_a_moment() -> None:
-    (way,) = fastest(np.ones((1, 15, 7)), some_limits(0, 7), 6)
-    assert way.duration == pytest.approx(SHORTEST)
+    (way,) = fastest(np.ones((1, 15, 7)), some_limits(0, 7), TimeGrid())
+    assert way.duration == pytest.approx(SHORTEST + TimeGrid().smooth_seconds)
     assert not way.velocities.any()
 
 

@@ -34,7 +34,9 @@ def compiled(function: ca.Function) -> ca.Function:
     generator = ca.CodeGenerator(f"{function.name()}.c")
     generator.add(function)
     source = generator.dump()
-    digest = hashlib.sha256("\n".join([ca.__version__, *FLAGS, source]).encode()).hexdigest()
+    digest = hashlib.sha256(
+        "\n".join([ca.CasadiMeta.version(), *FLAGS, source]).encode()
+    ).hexdigest()
     library = _folder() / f"{function.name()}_{digest[:32]}.so"
     with contextlib.suppress(OSError, subprocess.SubprocessError, RuntimeError):
         if not library.exists():

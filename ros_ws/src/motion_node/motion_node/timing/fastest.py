@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The fastest way along paths within velocity and acceleration limits.
+"""The fastest way along paths within velocity and acceleration limits, without jumps of these.
 
 Along a path q(s) the joints have the velocities q' ṡ and the accelerations q' s̈ + q'' ṡ². With
 x = ṡ², and s̈ constant from one grid point to the next, limits are linear in x here and x there: the
@@ -16,7 +16,7 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 Array = NDArray[np.float64]
 
@@ -34,6 +34,22 @@ class JointLimits:
 
     velocity: Array
     acceleration: Array
+
+
+@dataclass(frozen=True)
+class TimeGrid:
+    """How finely ways are timed.
+
+    Attributes:
+        parts: grid intervals for each step of a path.
+        seconds: between the points of a way [s].
+        smooth_seconds: within which an acceleration goes from one limit to the other, so that jerk
+            is at most twice the acceleration's limit by it [s].
+    """
+
+    parts: int = 6
+    seconds: float = 0.01
+    smooth_seconds: float = 0.03
 
 
 @dataclass(frozen=True)
@@ -55,25 +71,50 @@ class Way:
         return float(self.times[-1])
 
 
-def fastest(q: Array, limits: JointLimits, parts: int) -> list[Way]:
+def fastest(q: Array, limits: JointLimits, grid: TimeGrid) -> list[Way]:
     """The fastest timing of the clamped cubic splines through configurations.
 
     Args:
         q: shape (paths, steps + 1, n) [rad].
-        parts: grid intervals a step.
     """
     steps = q.shape[1] - 1
     spline = CubicSpline(np.linspace(0.0, 1.0, steps + 1), q, axis=1, bc_type="clamped")
-    grid = np.linspace(0.0, 1.0, steps * parts + 1)
-    positions, slopes, bends = (spline(grid, order) for order in range(3))
-    squares = _fastest_squares(slopes, bends, limits, 1.0 / (len(grid) - 1))
-    speeds = np.sqrt(squares)
-    durations = 2.0 / (len(grid) - 1) / (speeds[:, 1:] + speeds[:, :-1])
+    points = np.linspace(0.0, 1.0, steps * grid.parts + 1)
+    positions, slopes, bends = (spline(points, order) for order in range(3))
+    speeds = np.sqrt(_fastest_squares(slopes, bends, limits, points[1]))
+    durations = 2.0 * points[1] / (speeds[:, 1:] + speeds[:, :-1])
+    times = np.concatenate([np.zeros((len(q), 1)), np.cumsum(durations, axis=1)], axis=1)
     velocities = slopes * speeds[:, :, None]
-    slower = _slower(positions, velocities, durations, limits)
-    times = np.zeros(squares.shape)
-    np.cumsum(slower * durations, axis=1, out=times[:, 1:])
-    return [Way(*way) for way in zip(times, positions, velocities / slower[:, :, None])]
+    return [
+        _smoothed(CubicHermiteSpline(*way), limits, grid)
+        for way in zip(times, positions, velocities)
+    ]
+
+
+def _smoothed(way: CubicHermiteSpline, limits: JointLimits, grid: TimeGrid) -> Way:
+    """A way whose accelerations do not jump: each position is the mean of those around its time.
+
+    Velocities and accelerations are then means, too, and keep what limits they kept. It leaves the
+    path by the acceleration times a 24th of the squared time at most: some tenths of a millimetre.
+    """
+    end, window = float(way.x[-1]), grid.smooth_seconds
+    passed = way.antiderivative()
+    first, last = way(0.0), way(end)
+
+    def summed(times: Array) -> Array:
+        """The positions' integral, of a way that rests before and after."""
+        inside = np.asarray(passed(np.clip(times, 0.0, end)))
+        before, after = np.minimum(times, 0.0), np.maximum(times - end, 0.0)
+        return inside + before[:, None] * first + after[:, None] * last
+
+    count = max(2, round((end + window) / grid.seconds))
+    times = np.linspace(0.0, end + window, count + 1)
+    early = times - window
+    positions = (summed(times) - summed(early)) / window
+    positions[0], positions[-1] = first, last
+    velocities = (way(np.clip(times, 0.0, end)) - way(np.clip(early, 0.0, end))) / window
+    slower = _slower(positions, velocities, np.diff(times), limits)
+    return Way(slower * times, positions, velocities / slower)
 
 
 def _fastest_squares(slopes: Array, bends: Array, limits: JointLimits, step: float) -> Array:
@@ -127,22 +168,21 @@ def _greatest(slope: Array, reach: Array) -> Array:
     return bound
 
 
-def _slower(positions: Array, velocities: Array, durations: Array, limits: JointLimits) -> Array:
-    """By how much paths must be slower for the cubics between points to keep the limits.
+def _slower(positions: Array, velocities: Array, durations: Array, limits: JointLimits) -> float:
+    """By how much a way must be slower for the cubics between its points to keep the limits.
 
-    Returns:
-        Shape (paths, 1), 1 or a little more: between grid points the limits were not looked at.
+    It is 1 or a little more, as the limits were looked at at grid points only.
     """
-    span = durations[:, :, None]
-    mean = np.diff(positions, axis=1) / span
-    begin, end = velocities[:, :-1], velocities[:, 1:]
+    span = durations[:, None]
+    mean = np.diff(positions, axis=0) / span
+    begin, end = velocities[:-1], velocities[1:]
     first = np.abs(6.0 * mean - 4.0 * begin - 2.0 * end) / span
     last = np.abs(6.0 * mean - 2.0 * begin - 4.0 * end) / span
-    acceleration = (np.maximum(first, last) / limits.acceleration).max(axis=(1, 2))
+    acceleration = float((np.maximum(first, last) / limits.acceleration).max())
     # The velocity's extremes are at the ends, or where the acceleration passes through zero.
     linear, square = 6.0 * mean - 4.0 * begin - 2.0 * end, 3.0 * (begin + end - 2.0 * mean)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = -linear / (2.0 * square)
         within = np.where((share > 0.0) & (share < 1.0), begin + 0.5 * share * linear, 0.0)
-    velocity = (np.maximum(np.abs(within), np.abs(end)) / limits.velocity).max(axis=(1, 2))
-    return np.maximum(np.maximum(np.sqrt(acceleration), velocity), 1.0)[:, None]
+    velocity = float((np.maximum(np.abs(within), np.abs(end)) / limits.velocity).max())
+    return max(acceleration**0.5, velocity, 1.0)

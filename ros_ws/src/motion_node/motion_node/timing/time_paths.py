@@ -8,14 +8,14 @@ controller's cubic Hermite interpolation between the points keeps the limits.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..phases import HOME, PICK, PLACE, Phase, PhasePath
 from ..robots.joints import JointValues
-from .fastest import JointLimits, Way, fastest
+from .fastest import JointLimits, TimeGrid, Way, fastest
 from .trajectory import Interval, Trajectory
 
 Array = NDArray[np.float64]
@@ -32,8 +32,8 @@ class TimingSettings:
         finger_speed: most of each finger joint [m/s].
         finger_room: between each finger and a block when the hand arrives at it or leaves it; what
             fingers open farther they open and close on the way [m].
-        parts: points of the trajectory for each step of a path.
-        point_seconds: longest time between points while the fingers move [s].
+        point_seconds: longest time between points while the arm stands still [s].
+        grid: how finely the arm's ways are timed.
     """
 
     velocity_scale: float = 0.9
@@ -42,8 +42,8 @@ class TimingSettings:
     open_seconds: float = 0.25
     finger_speed: float = 0.1
     finger_room: float = 0.01
-    parts: int = 6
     point_seconds: float = 0.02
+    grid: TimeGrid = field(default_factory=TimeGrid)
 
 
 class _Points:
@@ -152,7 +152,7 @@ def time_paths(
         target = np.full(2, open_first)
         points.grip(first.phase, first.q[0], now, target, settings.open_seconds)
         now = target
-    ways = fastest(np.stack([path.q for path in paths]), scaled, settings.parts)
+    ways = fastest(np.stack([path.q for path in paths]), scaled, settings.grid)
     for index, (path, way) in enumerate(zip(paths, ways)):
         phase = path.phase
         wide = now if phase.tool.held or index == 0 else np.full(2, phase.tool.finger)
