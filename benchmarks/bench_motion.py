@@ -87,7 +87,7 @@ def time_rows(planner: MotionPlanner, peers: Peers | None, count: int) -> list[R
             ours.append(motion.seconds)
             if peers is None:
                 continue
-            seconds, feasible = peers.komo(problem.heights, BASES, problem.moves, collisions=True)
+            seconds, feasible = peers.komo(problem.heights, BASES, problem.moves)
             infeasible += not feasible
             ratios.append(motion.seconds / seconds)
         name = f"{moves} moves" if moves > 1 else "1 move"

@@ -57,7 +57,6 @@ class Peers:
         heights: Sequence[int],
         places: Sequence[tuple[float, float]],
         moves: Sequence[Move],
-        collisions: bool,
     ) -> tuple[float, bool]:
         """How long rai's KOMO takes for moves [s], and whether what it found is feasible."""
         answer = self._ask(
@@ -65,7 +64,6 @@ class Peers:
             heights=list(heights),
             places=list(places),
             moves=[[move.source, move.target] for move in moves],
-            collisions=collisions,
         )
         return answer["seconds"], answer["feasible"]
 

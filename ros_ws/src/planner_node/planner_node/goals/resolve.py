@@ -265,13 +265,13 @@ def _unknown_object(
     full_name = "_".join(parts)
     close = difflib.get_close_matches(full_name, [*map(str.lower, names), *sorted(known)], n=1)
     hint = f"; did you mean '{close[0]}'?" if close else ""
-    if parts and parts[0] not in known and known & set(parts[1:]):  # "polish red on blue"
-        hint = f"; {EXAMPLE}"
     if parts and frozenset(parts) <= _LOOKS:
-        hint = (
+        hint += (
             "; if it is on the table, it stands on no place, or camera/extrinsics is not the "
             "camera's calibration"
         )
+    elif parts and parts[0] not in known and known & set(parts[1:]):  # "polish red on blue"
+        hint = f"; {EXAMPLE}"
     return UnknownObjectError(
         words.text,
         sorted(names),
