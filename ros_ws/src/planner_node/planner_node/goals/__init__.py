@@ -2,9 +2,10 @@
 """Goals: what people type, what it means in a scene, and what excludes itself."""
 
 from .contradictions import check_contradictions, find_contradiction
-from .goal import Count, Goal, complete_goal
-from .parse import ParsedRelation, parse_goal
-from .resolve import goal_of_picture, resolve_goal, resolve_name
+from .goal import Count, Goal, complete_goal, goal_of_picture
+from .parse import parse_goal
+from .parsed import ParsedRelation
+from .resolve import resolve_goal, resolve_name
 from .terms import Kind, Words
 
 __all__ = [

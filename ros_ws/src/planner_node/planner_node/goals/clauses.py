@@ -3,30 +3,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
-from scene_graph import COLORS, PREDICATES, SHAPES, UP, Phrase
+from scene_graph import PREDICATES, SHAPES, UP, Phrase
 
 from ..errors import InvalidGoalError
+from .holdings import as_relation
 from .language import (
     CLEAR,
     HEADING,
-    JOINS,
     MUTE,
     NEGATION,
     NOUN_VERBS,
     NOUNS,
     NUMBERS,
-    OPENINGS,
     ORDERS,
-    OTHER_WORDS,
-    PLURALS,
-    SYNONYMS,
+    STEPS,
     TAKES,
+    VERBS,
     meant,
 )
+from .phrases import RIGHT_WORDS, Found, find, phrases_in
 from .sentences import end_of
 from .terms import Kind, Term, Words, term_of
 
@@ -35,26 +34,7 @@ EXAMPLE: Final = "write relations like 'red on blue, green left of red'"
 _WANTS: Final = frozenset({"want", "wants"})
 _GOES: Final = frozenset({"go", "be", "sit", "stand", "come"})
 _ANY: Final = {"anything": "nothing", "any": "no"}
-#: Words of phrases that a typo is looked for; the shorter ones are like too much.
-_TYPED_WRONG: Final = frozenset({
-    "on", "onto", "upon", "above", "below", "under", "underneath", "beneath", "left", "right",
-    "next", "beside", "adjacent", "inside", "directly",
-})  # fmt: skip
-_RIGHT_WORDS: Final = frozenset().union(
-    COLORS, SHAPES, NOUNS, MUTE, OPENINGS, CLEAR, TAKES, OTHER_WORDS, JOINS, PLURALS, SYNONYMS,
-    NUMBERS, {"not", "it", "of", "no"},
-)  # fmt: skip
 _SKIPPED: Final = MUTE | TAKES | {NEGATION}
-_Phrases = Mapping[tuple[str, ...], Phrase]
-
-
-@dataclass(frozen=True)
-class _Found:
-    """A phrase in a clause: its words from ``first`` to before ``last``."""
-
-    first: int
-    last: int
-    phrase: Phrase
 
 
 @dataclass(frozen=True)
@@ -68,6 +48,7 @@ class Said:
         clears: it says of the name that nothing stands on it.
         order: the names that follow are a tower or a row, see ``ORDERS``; None: they are not.
         asks: it has a verb, but no relation, as in "on blue, put red".
+        of_object: it says of its object how many subjects it has: "stack1 has two blocks".
     """
 
     words: Sequence[Words]
@@ -77,6 +58,7 @@ class Said:
     clears: bool = False
     order: tuple[str, bool] | None = None
     asks: bool = False
+    of_object: bool = False
 
 
 def read_clause(text: str, words: list[Words]) -> Said:
@@ -87,9 +69,13 @@ def read_clause(text: str, words: list[Words]) -> Said:
         words = words[2:]
     if words[0].text == "can" and any(item.text in _GOES for item in words):
         words = words[1:]
+    if len(words) > 1 and words[0].text in STEPS and words[1].text in VERBS | TAKES:
+        words = words[1:]
+    if held := as_relation(words):
+        return replace(read_clause(text, held), of_object=True)
     if order := [item for item in words if item.text in ORDERS]:
         return _tower(text, words, order[0])
-    words, found = _phrases_in(words)
+    words, found = phrases_in(words)
     texts = [item.text for item in words]
     if not found:
         return _without_phrase(text, words)
@@ -143,44 +129,11 @@ def read_clause(text: str, words: list[Words]) -> Said:
 
 
 def _asker(words: Sequence[Words]) -> int:
-    """Where "we" or "I" stands: "for the next trial we need red on blue"; 0 where nobody asks."""
-    asker = [index for index, item in enumerate(words) if item.text in ("i", "we")]
+    """Where it is said who asks: "for the next trial we need red on blue"; 0 where nobody does."""
+    asker = [index for index, item in enumerate(words) if item.text in {"i", "we"} | _WANTS]
     if not asker or any(item.text == NEGATION for item in words[: asker[-1]]):
         return 0
     return asker[-1]
-
-
-def _phrases_in(words: list[Words]) -> tuple[list[Words], list[_Found]]:
-    """The phrases of a clause, and its words with typos in phrases mended where none is found."""
-    phrases = PREDICATES.phrases
-    found = list(_find(words, phrases))
-    if all(item.phrase.needs_place for item in found):
-        right = _RIGHT_WORDS | {text for phrase in phrases for text in phrase}
-        mended = [_mended(item, right) for item in words]
-        if mended != words and (better := list(_find(mended, phrases))):
-            return mended, better
-    return words, found
-
-
-def _mended(item: Words, right: frozenset[str]) -> Words:
-    """A word of a phrase without its typo."""
-    found = meant(item.text, _TYPED_WRONG | right, right)
-    return Words(found, item.offset, item.stop) if found in _TYPED_WRONG else item
-
-
-def _find(words: Sequence[Words], phrases: _Phrases) -> Iterator[_Found]:
-    """Every phrase among the words; the longest that fits is taken."""
-    longest = max(map(len, phrases), default=0)
-    texts = tuple(word.text for word in words)
-    index = 0
-    while index < len(words):
-        for last in range(min(index + longest, len(words)), index, -1):
-            if phrase := phrases.get(texts[index:last]):
-                yield _Found(index, last, phrase)
-                index = last
-                break
-        else:
-            index += 1
 
 
 def _verb_at_start(words: Sequence[Words]) -> int:
@@ -249,7 +202,7 @@ def _without_phrase(text: str, words: list[Words]) -> Said:
         return Said(words, term_of(taken), takes=True)
     clear = [item for item in words if item.text in CLEAR]
     if not clear:
-        clear = [item for item in words[:2] if meant(item.text, CLEAR | _RIGHT_WORDS) in CLEAR]
+        clear = [item for item in words[:2] if meant(item.text, CLEAR | RIGHT_WORDS) in CLEAR]
     denied = any(item.text == NEGATION for item in words)
     rest = [item for item in words if item not in clear]
     start = max(_verb_at_start(rest), _asker(rest))
@@ -267,7 +220,7 @@ def _tower(text: str, words: Sequence[Words], order: Words) -> Said:
     rest = [
         item for item in words if item is not order and item.text not in HEADING | MUTE - NOUN_VERBS
     ]
-    found = list(_find(rest, PREDICATES.phrases))
+    found = list(find(rest, PREDICATES.phrases))
     links: tuple[tuple[Phrase, bool, Term, Words], ...] = ()
     if len(found) == 1:
         # A place; behind it there may be the first name.
@@ -293,7 +246,7 @@ def _taken(words: Sequence[Words]) -> list[Words]:
         if item.text in TAKES:
             name = list(words[index + 1 :])
             return _without_ends(name) if name else []
-        if item.text not in MUTE and meant(item.text, MUTE | _RIGHT_WORDS) not in MUTE:
+        if item.text not in MUTE and meant(item.text, MUTE | RIGHT_WORDS) not in MUTE:
             break
     return []
 
@@ -306,7 +259,7 @@ def no_relation(text: str, words: Sequence[Words]) -> InvalidGoalError:
     )
 
 
-def _missing(side: str, text: str, words: Sequence[Words], item: _Found) -> InvalidGoalError:
+def _missing(side: str, text: str, words: Sequence[Words], item: Found) -> InvalidGoalError:
     written = words[item.first : item.last]
     start, end = written[0].offset, end_of(written)
     return InvalidGoalError(f"there is no block {side} this", start, text[start:end])

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 
 from scene_graph import UP, Relation, Spot, Stacks, base_index, base_name, spots_of, up_relations
 
+from ..errors import GoalImageError
+
 
 @dataclass(frozen=True)
 class Count:
@@ -88,3 +90,28 @@ class Goal:
 def complete_goal(stacks: Stacks) -> Goal:
     """The goal that only ``stacks`` fulfils; what a goal image asks for (A.2.6)."""
     return Goal(tuple(sorted(up_relations(stacks))))
+
+
+def goal_of_picture(shown: Stacks, seen: Stacks) -> Goal:
+    """The complete goal that a goal image shows (A.2.6), for the scene that is seen.
+
+    Raises:
+        GoalImageError: the image shows other objects, or another number of stacks.
+    """
+    in_picture = {name for stack in shown for name in stack}
+    in_scene = {name for stack in seen for name in stack}
+    missing, extra = sorted(in_scene - in_picture), sorted(in_picture - in_scene)
+    if missing or extra:
+        differences = [
+            f"{', '.join(names)} {verb}"
+            for names, verb in ((missing, "missing in the image"), (extra, "not in the scene"))
+            if names
+        ]
+        raise GoalImageError(
+            f"the goal image shows other objects than the scene: {'; '.join(differences)}",
+            missing,
+            extra,
+        )
+    if len(shown) != len(seen):
+        raise GoalImageError(f"the goal image shows {len(shown)} stacks, the scene has {len(seen)}")
+    return complete_goal(shown)

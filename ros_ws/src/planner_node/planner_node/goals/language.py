@@ -37,7 +37,7 @@ MUTE: Final = VERBS | {
     "too", "nice", "great", "your", "task", "goal", "next", "could", "wish", "maybe", "perhaps",
     "somewhere", "sir", "dear", "afterwards", "after", "quickly", "carefully", "gently", "do",
     "does", "did", "try", "may", "might", "well", "as", "down", "anywhere", "today", "pls",
-    "plz", "pleas",
+    "plz", "pleas", "was", "secondly", "thirdly", "lastly",
 }  # fmt: skip
 #: Join relations as a comma does.
 JOINS: Final = frozenset({"and", "adn", "then", "but", "while", "plus", "&"})
@@ -65,9 +65,22 @@ ORDERS: Final = {
 }
 #: Every block that was not named before.
 OTHERS: Final = frozenset({"everything else", "all others", "others", "rest", "other ones"})
+#: No block that was not named before.
+NOTHING_ELSE: Final = frozenset({
+    "nothing else", "no other", "no others", "no other block", "no other blocks", "none other",
+})  # fmt: skip
 EXCEPT: Final = "except"
 #: The two or three blocks that were named before.
 BOTH: Final = frozenset({"both", "they", "them", "these", "all three", "all four"})
+#: The block that was named before.
+IT: Final = frozenset({"it", "this", "that"})
+EACH_OTHER: Final = frozenset({"each-other"})
+_PLACES: Final = ("stack", "tower", "place", "pile", "column")
+#: "in the same stack", "in different stacks"; a plural comes without its s.
+SAME_PLACE: Final = frozenset(f"same {place}" for place in _PLACES)
+DIFFERENT_PLACES: Final = frozenset(
+    f"{word} {place}" for word in ("different", "separate") for place in _PLACES
+)
 #: Behind a name and before a relation, looked for there with typos too.
 MODALS: Final = frozenset({
     "should", "shall", "must", "would", "stands", "standing", "sitting", "placed", "needs",
@@ -80,8 +93,34 @@ SHORT_NEGATIONS: Final = {
     "dont": "do", "isnt": "is", "shouldnt": "should", "never": "do", "cannot": "could",
     "mustnt": "must", "without": "do",
 }  # fmt: skip
+#: Number the steps, in front of a verb: "second, put red on blue"; elsewhere they name something.
+STEPS: Final = frozenset({"second", "third", "fourth", "fifth", "last"})
+#: Say of a place how many blocks are in it, of a block what is on it.
+HOLDS: Final = frozenset({"have", "has", "contain", "contains", "hold", "holds"})
 #: Several words that stand for others, the longest first; looked for everywhere.
 MERGED: Final = {
+    ("i", "do", "not", "care", "which", "ones"): (),
+    ("i", "do", "not", "care", "which", "one"): (),
+    ("i", "do", "not", "care", "which"): (),
+    ("it", "does", "not", "matter", "which"): (),
+    ("no", "matter", "which", "ones"): (),
+    ("no", "matter", "which"): (),
+    ("would", "like", "you", "to"): ("want",),
+    ("would", "like", "to", "see"): ("want",),
+    ("would", "like", "to", "have"): ("want",),
+    ("would", "like", "to"): ("want",),
+    ("would", "like"): ("want",),
+    ("asked", "for"): ("want",),
+    ("asks", "for"): ("want",),
+    ("each", "other"): ("each-other",),
+    ("one", "another"): ("each-other",),
+    ("nothing", "but"): ("only",),
+    ("nothing", "except"): ("only",),
+    ("nothing", "other", "than"): ("only",),
+    ("not", "more", "than"): ("at-most",),
+    ("more", "than"): ("more-than",),
+    ("fewer", "than"): ("fewer-than",),
+    ("less", "than"): ("fewer-than",),
     ("at", "least"): ("at-least",),
     ("at", "most"): ("at-most",),
     ("no", "more", "than"): ("at-most",),
@@ -172,6 +211,8 @@ PLURALS: Final = {
     "blocks": "block", "objects": "object", "ones": "one", "things": "thing", "pieces": "piece",
     "items": "item", "bricks": "brick", "boxes": "box", "cubes": "cube", "cylinders": "cylinder",
     "spheres": "sphere", "balls": "ball", "prisms": "prism", "roofs": "roof", "cuboids": "cuboid",
+    "stacks": "stack", "places": "place", "towers": "tower", "columns": "column", "piles": "pile",
+    "positions": "position", "spots": "spot", "slots": "slot",
 }  # fmt: skip
 #: Other words for a shape or a colour, where no object is called so.
 SYNONYMS: Final = {
@@ -188,7 +229,7 @@ OTHER_WORDS: Final = frozenset({
     "olive", "turquoise", "indigo", "amber", "coral", "crimson", "scarlet", "rose", "ruby",
     "plum", "lilac", "aqua", "azure", "bronze", "copper", "cream", "peach", "salmon", "tin",
     "bed", "glue", "line", "back", "ink", "pine", "bin", "can", "them", "they", "their",
-    "there", "here", "these", "those",
+    "there", "here", "these", "those", "which", "only", "same", "different",
 })  # fmt: skip
 #: "the left stack", "the middle place"; with what they are called.
 SIDES: Final = {

@@ -10,33 +10,23 @@ relation comes from :data:`scene_graph.PREDICATES`; the other words are in
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
-from scene_graph import ABOVE, LEFT, PREDICATES, UP, Phrase
+from scene_graph import ABOVE, BESIDE, LEFT, PREDICATES, UP, Phrase
 
 from ..errors import InvalidGoalError
 from .clauses import EXAMPLE, Said, no_relation, read_clause
-from .language import BOTH
+from .language import BOTH, DIFFERENT_PLACES, EACH_OTHER, IT, SAME_PLACE
+from .lists import is_listed, turned_at_comma
+from .objections import check_places, unclear, untold
+from .parsed import ParsedRelation, in_one_place, none_but
 from .sentences import is_heading, sentences
 from .terms import Kind, Term, Words
 
-_IT: Final = frozenset({"it", "this", "that"})
-
-
-@dataclass(frozen=True)
-class ParsedRelation:
-    """A relation whose names are not yet resolved; subject and object as they were written.
-
-    Attributes:
-        negated: it must not hold.
-    """
-
-    subject: Term
-    phrase: Phrase
-    object: Term
-    negated: bool = False
+#: The object of the relation before: "red on blue, which is in stack1".
+_WHICH: Final = frozenset({"which", "who"})
 
 
 def parse_goal(text: str) -> tuple[ParsedRelation, ...]:
@@ -77,7 +67,7 @@ class _Reader:
 
     def read(self, sentence: Sequence[Said]) -> None:
         """Adds the relations of a sentence."""
-        said = _turned_at_comma(sentence)
+        said = turned_at_comma(sentence)
         for number, clause in enumerate(said):
             if clause.order is not None:
                 self._read_row(clause, clause.order, said[number + 1 :])
@@ -89,6 +79,8 @@ class _Reader:
         for number, clause in enumerate(said):
             follows = any(other.links or other.clears for other in said[number + 1 :])
             named = [other.subject for other in waiting if other.subject is not None]
+            if clause.takes and is_listed(said[number + 1 :]):
+                clause = replace(clause, takes=False)  # "get red and blue into stack 0"
             if clause.takes:
                 if waiting or self.taken is not None:
                     raise no_relation(self._text, clause.words)
@@ -101,6 +93,13 @@ class _Reader:
                     self._clear(self._meant(term, None))
                 self._subjects, self._object = subjects, None
                 continue
+            if clause.of_object and named:
+                # "stack0 and stack1 have no blocks"
+                assert clause.subject is not None
+                for term in named:
+                    phrase, denied, _, written = clause.links[0]
+                    self._add([clause.subject], phrase, denied, written, term)
+                named = []
             if clause.links:
                 subjects = self._subjects_of(clause, named, subjects)
                 self._add_links(subjects, clause)
@@ -124,7 +123,7 @@ class _Reader:
         if waiting:
             raise no_relation(self._text, waiting[0].words)
         if self.taken is not None and last is not None:
-            raise _untold(self.taken)
+            raise untold(self.taken)
 
     def _read_row(self, heading: Said, order: tuple[str, bool], names: Sequence[Said]) -> None:
         """The relations of "from bottom to top in stack 1: red, green, blue"."""
@@ -146,7 +145,7 @@ class _Reader:
     def finish(self) -> tuple[ParsedRelation, ...]:
         """All relations."""
         if self.taken is not None:
-            raise _untold(self.taken)
+            raise untold(self.taken)
         if not self.relations:
             raise InvalidGoalError(f"the goal is empty; {EXAMPLE}")
         return tuple(self.relations)
@@ -183,18 +182,22 @@ class _Reader:
                 first = clause.links[0][3]
                 raise InvalidGoalError("there is no block before this", first.offset, first.text)
             return list(named or before)
-        if clause.subject.words.text in _IT and self.taken is not None and not named:
+        if clause.subject.words.text in IT and self.taken is not None and not named:
             taken, self.taken = self.taken, None
             return [taken]
         if clause.subject.words.text in BOTH:
             return [*named, *self._all_named(clause.subject)]
+        if clause.subject.words.text in _WHICH and not named:
+            if self._object is None or self._object.is_place or self._object.kind is not Kind.THE:
+                raise unclear(clause.subject)
+            return [self._object]
         return [*named, self._meant(clause.subject, None)]
 
     def _all_named(self, term: Term) -> list[Term]:
         """The blocks that "both" or "all three" stands for: those that were named, if so many."""
         number = {"all three": 3, "all four": 4}.get(term.words.text, 2)
         if len(self._named) != number:
-            raise _unclear(term)
+            raise unclear(term)
         return list(self._named.values())
 
     def _meant(self, term: Term, phrase: Phrase | None, carried: bool = False) -> Term:
@@ -204,7 +207,7 @@ class _Reader:
             phrase: the relation whose object it is; None for a subject.
             carried: the relation's subject is that of the one before.
         """
-        if term.words.text not in _IT:
+        if term.words.text not in IT:
             return term
         subject = self._subjects[0] if len(self._subjects) == 1 else None
         found: Term | None = None
@@ -217,7 +220,7 @@ class _Reader:
             before, denied, _ = self._link
             found = subject if before == phrase and not denied else None
         if found is None or found.kind is not Kind.THE:
-            raise _unclear(term)
+            raise unclear(term)
         return found
 
     def _clear(self, term: Term) -> None:
@@ -240,7 +243,13 @@ class _Reader:
                 )
         carried = clause.subject is None
         for phrase, denied, object_, written in links:
-            if object_.words.text in BOTH:
+            if object_.words.text in EACH_OTHER:
+                if len(subjects) != 2 or phrase.predicate.name != BESIDE:
+                    raise unclear(object_)
+                subjects, objects = subjects[:1], subjects[1:]
+            elif self._about_one_place(subjects, phrase, denied, object_):
+                continue
+            elif object_.words.text in BOTH:
                 objects = self._all_named(object_)
             else:
                 objects = [self._meant(object_, phrase, carried)]
@@ -250,74 +259,57 @@ class _Reader:
             self._link = (phrase, denied, written)
             subjects, carried = objects[-1:], False
 
+    def _about_one_place(
+        self, subjects: Sequence[Term], phrase: Phrase, denied: bool, object_: Term
+    ) -> bool:
+        """Adds the relations of "red and blue in the same stack"; False where it says no such."""
+        text = object_.words.text
+        blocks = list(subjects)
+        with_other = next((head for head in SAME_PLACE if text.startswith(f"{head} as ")), None)
+        if with_other is not None:
+            rest = text.removeprefix(f"{with_other} as ")
+            blocks.append(self._meant(Term(Words(rest, object_.words.offset)), phrase))
+        elif text in SAME_PLACE | DIFFERENT_PLACES:
+            if len(blocks) == 1 and self._object is not None and not self._object.is_place:
+                blocks.append(self._object)  # "red under blue, in the same stack"
+        else:
+            return False
+        relations = in_one_place(blocks, text not in DIFFERENT_PLACES, denied)
+        if relations is None or phrase != Phrase(PREDICATES[ABOVE], needs_place=True):
+            raise unclear(object_)
+        self.relations += relations
+        self._named |= {term.words.text: term for term in blocks}
+        return True
+
     def _add(
         self, subjects: Sequence[Term], phrase: Phrase, denied: bool, written: Words, object_: Term
     ) -> None:
+        if only := [subject for subject in subjects if subject.only]:
+            nothing_else = none_but(subjects, phrase, denied, object_)
+            if nothing_else is None:
+                raise unclear(only[0])
+            self.relations.append(nothing_else)
         for subject in subjects:
             if subject.others:
                 if not self._named:
-                    raise _unclear(subject)
+                    raise unclear(subject)
+                if subject.kind is Kind.NO and set(self._named) != {
+                    term.words.text for term in self._subjects
+                }:
+                    # Who else was named may be meant as well.
+                    raise unclear(subject)
                 subject = replace(
                     subject, others=False, but=tuple(term.words for term in self._named.values())
                 )
             for term in (subject, object_):
-                if term.words.text in _IT:
-                    raise _unclear(term)
+                if term.words.text in IT:
+                    raise unclear(term)
                 if term.kind is Kind.THE and not term.is_place:
                     self._named.setdefault(term.words.text, term)
-            _check_places(subject, phrase, object_, written.text)
+            check_places(subject, phrase, object_, written.text)
             meaning = phrase
             together = subject.several or len(subjects) > 1
             if together and object_.is_place and phrase == Phrase(PREDICATES[UP]) and not denied:
                 # Several blocks on a place cannot all stand directly on it.
                 meaning = phrase._replace(predicate=PREDICATES[ABOVE])
             self.relations.append(ParsedRelation(subject, meaning, object_, denied))
-
-
-def _turned_at_comma(said: Sequence[Said]) -> list[Said]:
-    """With "on blue, put red" as one clause."""
-    result: list[Said] = []
-    for clause in said:
-        before = result[-1] if result else None
-        if clause.asks and before is not None and before.links and before.subject is None:
-            result[-1] = replace(before, subject=clause.subject)
-        else:
-            result.append(clause)
-    return result
-
-
-def _check_places(subject: Term, phrase: Phrase, object_: Term, written: str) -> None:
-    if phrase.needs_place and not object_.is_place:
-        raise InvalidGoalError(
-            f"'{written}' needs a place, such as stack0; "
-            f"use '{phrase.predicate.words}' for a block",
-            object_.words.offset,
-            object_.words.text,
-        )
-    if not phrase.predicate.takes_place:
-        for term in (subject, object_):
-            if term.is_place:
-                fitting = [
-                    f"'{PREDICATES[name].words}'"
-                    for name in PREDICATES
-                    if PREDICATES[name].takes_place and PREDICATES[name].phrases
-                ]
-                raise InvalidGoalError(
-                    f"'{written}' relates two blocks; use {' or '.join(fitting)} for a place",
-                    term.words.offset,
-                    term.words.text,
-                )
-
-
-def _untold(term: Term) -> InvalidGoalError:
-    return InvalidGoalError(
-        f"it is not said where to put it; {EXAMPLE}", term.words.offset, term.words.text
-    )
-
-
-def _unclear(term: Term) -> InvalidGoalError:
-    return InvalidGoalError(
-        f"it is not clear which block '{term.words.text}' is; name it",
-        term.words.offset,
-        term.words.text,
-    )

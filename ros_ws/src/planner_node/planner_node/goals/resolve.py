@@ -19,14 +19,13 @@ from scene_graph import (
     UP,
     Phrase,
     Relation,
-    Stacks,
     base_index,
     base_name,
 )
 
-from ..errors import AmbiguousObjectError, GoalImageError, InvalidGoalError, UnknownObjectError
+from ..errors import AmbiguousObjectError, InvalidGoalError, UnknownObjectError
 from .clauses import EXAMPLE
-from .goal import Count, Goal, complete_goal
+from .goal import Count, Goal
 from .language import (
     CLEAR,
     MODALS,
@@ -39,7 +38,7 @@ from .language import (
     TAKES,
     meant,
 )
-from .parse import ParsedRelation
+from .parsed import ParsedRelation
 from .terms import Kind, Term, Words
 
 #: What people call a place, with or without a number; only ``stack0`` … are places.
@@ -89,6 +88,10 @@ def _resolve_term(term: Term, names: Sequence[str], stack_count: int | None) -> 
     """The one that is meant, or all that fit where it says how many of them."""
     if term.kind is Kind.THE:
         return (resolve_name(term.words, names, stack_count),)
+    if term.is_every_place:
+        if stack_count is None:
+            raise _unknown_place(term.words, None)
+        return tuple(base_name(index) for index in range(stack_count))
     left_out = {resolve_name(words, names, stack_count) for words in term.but}
     return tuple(name for name in _fitting(term.words, names, stack_count) if name not in left_out)
 
@@ -294,28 +297,3 @@ def _unknown_place(words: Words, stack_count: int | None) -> UnknownObjectError:
         known,
         f"at offset {words.offset}: there is no place '{words.text}'; {listed}{example}",
     )
-
-
-def goal_of_picture(shown: Stacks, seen: Stacks) -> Goal:
-    """The complete goal that a goal image shows (A.2.6), for the scene that is seen.
-
-    Raises:
-        GoalImageError: the image shows other objects, or another number of stacks.
-    """
-    in_picture = {name for stack in shown for name in stack}
-    in_scene = {name for stack in seen for name in stack}
-    missing, extra = sorted(in_scene - in_picture), sorted(in_picture - in_scene)
-    if missing or extra:
-        differences = [
-            f"{', '.join(names)} {verb}"
-            for names, verb in ((missing, "missing in the image"), (extra, "not in the scene"))
-            if names
-        ]
-        raise GoalImageError(
-            f"the goal image shows other objects than the scene: {'; '.join(differences)}",
-            missing,
-            extra,
-        )
-    if len(shown) != len(seen):
-        raise GoalImageError(f"the goal image shows {len(shown)} stacks, the scene has {len(seen)}")
-    return complete_goal(shown)

@@ -17,34 +17,73 @@ from .language import (
     NEGATION,
     NUMBERS,
     OPENINGS,
+    ORDERS,
     PLACE_NOUNS,
     POLITE,
     SHORT_NEGATIONS,
     SIDES,
+    meant,
 )
+from .phrases import RIGHT_WORDS
 from .terms import Words
 
 _TOKEN: Final = re.compile(
-    r"(?P<word>[^\W_](?:[\w-]|['’](?=\w))*|&)|(?P<end>[.;!?])|(?P<comma>[,:])|(?P<other>\S)"
+    r"(?P<word>[^\W_](?:[\w-]|['’](?=\w))*|&)|(?P<end>[.;!?])|(?P<comma>[,:])"
+    r"|(?P<arrow>[-=]+>|→)|(?P<other>\S)"
 )
+_LONGEST: Final = max(map(len, MERGED))
 
 
 def sentences(text: str) -> Iterator[list[list[Words]]]:
     """The clauses of every sentence; those that say nothing are left out."""
     clauses: list[list[Words]] = [[]]
-    for match in [*_TOKEN.finditer(text), None]:
-        if match is not None and match["other"]:
+    for match in _TOKEN.finditer(text):
+        if match["other"]:
             raise InvalidGoalError("unexpected character", match.start(), match["other"])
-        if match is None or match["end"]:
-            if kept := [clause for clause in map(_merged, clauses) if not _says_nothing(clause)]:
-                yield _as_tower([part for clause in kept for part in _split_negation(clause)])
+        if match["end"]:
+            yield from _finished(clauses)
             clauses = [[]]
+        elif match["arrow"]:
+            clauses[-1].append(Words("to", match.start(), match.end()))
+        elif match["comma"] == ":" and (place := _place_heading(_merged(clauses[-1]))):
+            # "stack 1: red" is a sentence of its own.
+            yield from _finished(clauses[:-1])
+            clauses = [place, []]
         elif match["comma"]:
             if match["comma"] == ":" and is_heading(_merged(clauses[-1])):
                 clauses.pop()
             clauses.append([])
         else:
             clauses[-1] += _words(match["word"].lower().replace("’", "'"), match.start())
+    yield from _finished(clauses)
+
+
+def _finished(clauses: Sequence[list[Words]]) -> Iterator[list[list[Words]]]:
+    """The sentence of these clauses; none where they say nothing."""
+    if kept := [clause for clause in map(_merged, clauses) if not _says_nothing(clause)]:
+        parts = [part for clause in _with_order(kept) for part in _split_negation(clause)]
+        yield _as_tower(parts)
+
+
+def _place_heading(clause: list[Words]) -> list[Words] | None:
+    """ "in stack 1" for "stack 1" in front of a colon; None for all else."""
+    if clause and Words(" ".join(item.text for item in clause), clause[0].offset).is_place:
+        return [Words("in", clause[0].offset, clause[0].offset), *clause]
+    return None
+
+
+def _with_order(clauses: Sequence[list[Words]]) -> list[list[Words]]:
+    """ "in stack 1, from bottom to top: red, blue" with the order behind its place."""
+    result: list[list[Words]] = []
+    for clause in clauses:
+        before = result[-1] if result else []
+        ordered = any(item.text in ORDERS for item in clause)
+        place = len(before) > 1 and before[0].text in ("in", "on", "at")
+        if ordered and place and _place_heading(before[1:]):
+            result[-1] = [*before, *clause]
+        else:
+            result.append(clause)
+    return result
 
 
 def _words(word: str, offset: int) -> list[Words]:
@@ -73,7 +112,7 @@ def _merged(words: Sequence[Words]) -> list[Words]:
     result: list[Words] = []
     index = 0
     while index < len(words):
-        for length in range(min(5, len(words) - index), 0, -1):
+        for length in range(min(_LONGEST, len(words) - index), 0, -1):
             texts = tuple(item.text for item in words[index : index + length])
             if texts in MERGED:
                 whole = words[index : index + length]
@@ -100,6 +139,8 @@ def _side_of_the_row(words: Sequence[Words]) -> Words | None:
 
 
 def _says_nothing(clause: Sequence[Words]) -> bool:
+    if clause and clause[0].text == "for" and is_heading(clause):
+        return True  # "for the experiment"
     return all(item.text in POLITE for item in clause)
 
 
@@ -179,7 +220,11 @@ def _heading_before(words: list[Words]) -> tuple[list[Words], list[Words]]:
 
 def is_heading(words: Sequence[Words]) -> bool:
     """Whether it only says that a goal follows: "the goal for my class", "build a tower"."""
-    return all(item.text in HEADING | MUTE for item in words)
+    known = HEADING | MUTE
+    exact = [item.text in known for item in words]
+    if len(words) > 1 and any(exact):
+        exact = [meant(item.text, known, RIGHT_WORDS) is not None for item in words]
+    return all(exact)
 
 
 def end_of(words: Sequence[Words]) -> int:

@@ -12,7 +12,18 @@ from typing import Final
 from scene_graph import base_name
 
 from ..errors import InvalidGoalError
-from .language import BOTH, EXCEPT, MODALS, NUMBERS, OTHERS, PLACE_NOUNS, PLURALS, SIDES, meant
+from .language import (
+    BOTH,
+    EXCEPT,
+    MODALS,
+    NOTHING_ELSE,
+    NUMBERS,
+    OTHERS,
+    PLACE_NOUNS,
+    PLURALS,
+    SIDES,
+    meant,
+)
 
 _BASE: Final = re.compile(r"([a-z]+)[ _]?(?:number |no |nr )?(\d+)")
 
@@ -66,7 +77,8 @@ class Term:
     Attributes:
         least, most: of a COUNT; most is None where more may be.
         but: of EVERY, those that are left out.
-        others: of EVERY, those that were named are left out.
+        others: of EVERY and NO, those that were named are left out.
+        only: of THE, nothing else is there.
     """
 
     words: Words
@@ -75,11 +87,17 @@ class Term:
     most: int | None = None
     but: tuple[Words, ...] = ()
     others: bool = False
+    only: bool = False
 
     @property
     def is_place(self) -> bool:
-        """Whether it is a place."""
-        return self.words.is_place
+        """Whether it is a place, or every one."""
+        return self.words.is_place or self.is_every_place
+
+    @property
+    def is_every_place(self) -> bool:
+        """Whether it is "every stack"."""
+        return self.kind is Kind.EVERY and self.words.text in PLACE_NOUNS
 
     @property
     def several(self) -> bool:
@@ -97,6 +115,13 @@ _ALONE: Final = {
     "something": Kind.COUNT,
     "anything": Kind.COUNT,
     "all": Kind.EVERY,
+}
+#: Which bounds a number has behind these words, and what is added to it.
+_BOUNDS: Final = {
+    "at-least": (True, False, 0),
+    "at-most": (False, True, 0),
+    "more-than": (True, False, 1),
+    "fewer-than": (False, True, -1),
 }
 
 
@@ -116,6 +141,17 @@ def term_of(words: Sequence[Words]) -> Term:
         return Term(Words("block", offset), Kind.EVERY, others=True)
     if texts[:2] == ["all", "other"]:
         return replace(term_of([words[0], *words[2:]]), others=True)
+    if whole.text in NOTHING_ELSE:
+        return Term(Words("block", offset), Kind.NO, 0, 0, others=True)
+    if texts[0] in ("this", "that") and len(texts) > 1:
+        return term_of(words[1:])
+    if texts[0] == "only" and len(texts) > 1 and _quantity(texts)[0] is Kind.THE:
+        alone = term_of(words[1:])
+        if alone.kind is not Kind.THE:
+            raise InvalidGoalError(
+                "it is not clear what 'only' is said of; name the blocks", offset, whole.text
+            )
+        return replace(alone, only=True)
     if len(texts) == 2 and texts[0] in _ALONE and meant(texts[1], MODALS):
         texts = texts[:1]  # "nothing shoud be on red"
     if len(texts) == 1 and len(texts[0]) > 5:
@@ -148,17 +184,19 @@ def _quantity(texts: Sequence[str]) -> tuple[Kind, int, int | None, int]:
         return Kind.NO, 0, 0, 1
     if first in _SOME:
         return Kind.COUNT, 1, None, 1
-    named = {"at-least": (True, False), "at-most": (False, True)}.get(first)
+    named = _BOUNDS.get(first)
     used = int(named is not None or first in ("exactly", "only"))
     if used < len(texts):
-        number = _number(texts[used])
+        number = number_of(texts[used])
         if number is not None:
-            low, high = named or (True, True)
+            low, high, more = named or (True, True, 0)
+            number = max(0, number + more)
             return Kind.COUNT, number if low else 0, number if high else None, used + 1
     return Kind.THE, 1, None, 0
 
 
-def _number(text: str) -> int | None:
+def number_of(text: str) -> int | None:
+    """The number that a word is, in digits or in letters."""
     return int(text) if text.isdigit() else NUMBERS.get(text)
 
 

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Relations as they were read, whose names are not yet resolved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import permutations
+
+from scene_graph import ABOVE, LEFT, PREDICATES, UP, Phrase
+
+from .terms import Kind, Term, Words
+
+
+@dataclass(frozen=True)
+class ParsedRelation:
+    """A relation whose names are not yet resolved; subject and object as they were written.
+
+    Attributes:
+        negated: it must not hold.
+    """
+
+    subject: Term
+    phrase: Phrase
+    object: Term
+    negated: bool = False
+
+
+def in_one_place(blocks: Sequence[Term], same: bool, denied: bool) -> list[ParsedRelation] | None:
+    """The relations of "red and blue in the same stack", or in different ones.
+
+    Returns:
+        None where it is not clear what is meant: of three that are not in the same stack, two may
+        be.
+    """
+    if any(term.kind is not Kind.THE or term.is_place for term in blocks) or len(blocks) < 2:
+        return None
+    if len(blocks) > 2 and denied:
+        return None
+    # In one stack are those of which none is left of the other.
+    predicate = PREDICATES[LEFT if same != denied else ABOVE]
+    return [
+        ParsedRelation(one, Phrase(predicate), other, negated=True)
+        for one, other in permutations(blocks, 2)
+    ]
+
+
+def none_but(
+    subjects: Sequence[Term], phrase: Phrase, denied: bool, object_: Term
+) -> ParsedRelation | None:
+    """That nothing but the subjects has a relation: "only red in stack1"; None: it is not clear."""
+    if denied or any(term.kind is not Kind.THE for term in subjects) or not object_.is_place:
+        return None
+    others = Term(
+        Words("block", subjects[0].words.offset),
+        Kind.EVERY,
+        but=tuple(subject.words for subject in subjects),
+    )
+    if phrase.predicate.name == UP:
+        phrase = Phrase(PREDICATES[ABOVE])  # "only red on stack1"
+    return ParsedRelation(others, phrase, object_, negated=True)

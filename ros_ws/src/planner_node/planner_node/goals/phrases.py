@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The phrases of predicates among the words of a clause, with typos in them mended."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from scene_graph import COLORS, PREDICATES, SHAPES, Phrase
+
+from .language import (
+    CLEAR,
+    JOINS,
+    MUTE,
+    NOUNS,
+    NUMBERS,
+    OPENINGS,
+    OTHER_WORDS,
+    PLURALS,
+    SYNONYMS,
+    TAKES,
+    meant,
+)
+from .terms import Words
+
+#: Words of phrases that a typo is looked for; the shorter ones are like too much.
+_TYPED_WRONG: Final = frozenset({
+    "on", "onto", "upon", "above", "below", "under", "underneath", "beneath", "left", "right",
+    "next", "beside", "adjacent", "inside", "directly",
+})  # fmt: skip
+#: Words that are right as they are.
+RIGHT_WORDS: Final = frozenset().union(
+    COLORS, SHAPES, NOUNS, MUTE, OPENINGS, CLEAR, TAKES, OTHER_WORDS, JOINS, PLURALS, SYNONYMS,
+    NUMBERS, {"not", "it", "of", "no"},
+)  # fmt: skip
+_Phrases = Mapping[tuple[str, ...], Phrase]
+
+
+@dataclass(frozen=True)
+class Found:
+    """A phrase in a clause: its words from ``first`` to before ``last``."""
+
+    first: int
+    last: int
+    phrase: Phrase
+
+
+def phrases_in(words: list[Words]) -> tuple[list[Words], list[Found]]:
+    """The phrases of a clause, and its words with typos in phrases mended where that finds more."""
+    phrases = PREDICATES.phrases
+    found = list(find(words, phrases))
+    right = RIGHT_WORDS | {text for phrase in phrases for text in phrase}
+    mended = [_mended(item, right) for item in words]
+    if mended != words and (better := list(find(mended, phrases))):
+        longer = len(found) == len(better) and _length(found) < _length(better)
+        if longer or all(item.phrase.needs_place for item in found):
+            return mended, better
+    return words, found
+
+
+def _length(found: Sequence[Found]) -> int:
+    return sum(item.last - item.first for item in found)
+
+
+def _mended(item: Words, right: frozenset[str]) -> Words:
+    """A word of a phrase without its typo."""
+    found = meant(item.text, _TYPED_WRONG | right, right)
+    return Words(found, item.offset, item.stop) if found in _TYPED_WRONG else item
+
+
+def find(words: Sequence[Words], phrases: _Phrases) -> Iterator[Found]:
+    """Every phrase among the words; the longest that fits is taken."""
+    longest = max(map(len, phrases), default=0)
+    texts = tuple(word.text for word in words)
+    index = 0
+    while index < len(words):
+        for last in range(min(index + longest, len(words)), index, -1):
+            if phrase := phrases.get(texts[index:last]):
+                yield Found(index, last, phrase)
+                index = last
+                break
+        else:
+            index += 1

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Goals that are told from the places: what they hold, lists behind them, what is together."""
+
+from __future__ import annotations
+
+import pytest
+
+from planner_node.errors import PlannerError
+from planner_node.goals import parse_goal, resolve_goal
+from scene_graph import Stacks
+
+NAMES = ("blue_box", "cyan_box", "green_box", "red_box")
+
+
+def holds(text: str, stacks: Stacks, names: tuple[str, ...] = NAMES) -> bool:
+    """Whether a goal is true of a state."""
+    return resolve_goal(parse_goal(text), names, len(stacks)).holds(stacks)
+
+
+def state(text: str) -> Stacks:
+    """ "rb c g": red and on it blue, then cyan, then green; "-" is an empty place."""
+    names = {name[0]: name for name in NAMES}
+    return tuple(tuple(names[one] for one in word if one != "-") for word in text.split())
+
+
+@pytest.mark.parametrize(
+    ("text", "true", "false"),
+    [
+        ("stack0 has two blocks", "rb c g", "r bc g"),
+        ("stack0 should contain exactly two blocks", "rb c g", "rbc - g"),
+        ("stack 1 must not have any blocks in it", "rb - cg", "r b cg"),
+        ("stack0 and stack2 should have no blocks in them", "- rbcg -", "r bcg -"),
+        ("stack0 has more than two blocks", "rbc g -", "rb c g"),
+        ("stack0 has fewer than two blocks", "r bc g", "rb c g"),
+        ("no stack has more than two blocks", "rb cg -", "rbc g -"),
+        ("no stack should be higher than two blocks", "rb cg -", "rbc g -"),
+        ("no stack taller than 2", "rb cg -", "rbc g -"),
+        ("every stack contains at least one block", "rb c g", "rb cg -"),
+        ("all stacks have at most two blocks", "rb cg -", "- rbc g"),
+        ("red has nothing on it", "br c g", "rb c g"),
+        ("blue should have red on top of it", "br c g", "b r cg"),
+        ("only red in stack1", "bc r g", "bc rg -"),
+        ("nothing but red in stack1", "bc r g", "bc rg -"),
+        ("only red and blue in stack1", "c rb g", "c rbg -"),
+        ("red in stack1 and nothing else", "bc r g", "bc rg -"),
+        ("stack 2: red, stack 1: blue", "cg b r", "cg r b"),
+        ("stack 0: red. stack 1: blue and green.", "r bgc -", "r bc g"),
+        ("Red -> stack0, blue -> stack 1", "r bc g", "b rc g"),
+        ("In stack1, from bottom to top: red, blue, green", "c rbg -", "c gbr -"),
+        ("red and blue in the same stack", "bcr - g", "bc r g"),
+        ("red in the same stack as blue", "bcr - g", "bc r g"),
+        ("red and blue not in the same stack", "bc r g", "bcr - g"),
+        ("red, blue and green in different stacks", "r bc g", "r bg c"),
+        ("red below blue, somewhere in the same stack", "rcb - g", "brc - g"),
+        ("red and blue next to each other", "r b cg", "r cg b"),
+        ("red on blue, which is in stack 1", "c br g", "br c g"),
+        ("get red, blue and green into stack 0", "rgb c -", "rg b c"),
+        ("First put red on blue. Second put green on red.", "brg c -", "bgr c -"),
+        ("For the experiment, red is on blue", "br c g", "rb c g"),
+        ("A student asked for red directly on blue", "br c g", "rb c g"),
+        ("My class would like to see red on blue", "br c g", "rb c g"),
+        ("exactly two blocks in stack1, I don't care which ones", "r bc g", "r b cg"),
+        ("put the red box direclty on stack2", "bc g r", "b c gr"),
+        ("please bulid this: red on blue", "br c g", "rb c g"),
+    ],
+)
+def test_what_is_told_of_places(text: str, true: str, false: str) -> None:
+    assert holds(text, state(true))
+    assert not holds(text, state(false))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "only red on blue",
+        "only red blocks in stack1",
+        "blue on green, red in stack1 and nothing else",
+        "red, blue and green not in the same stack",
+        "red, blue and green next to each other",
+        "red and blue on each other",
+        "which is in stack1",
+        "red on stack1, which is left of blue",
+        "no stack has no blocks",
+        "no stack has at most two blocks",
+        "red has blue in it",
+    ],
+)
+def test_what_may_mean_several_things_is_asked_back(text: str) -> None:
+    with pytest.raises(PlannerError):
+        resolve_goal(parse_goal(text), NAMES, 3)
