@@ -285,7 +285,7 @@ def test_nothing(text: str, meaning: str) -> None:
         "from bottom to top: red", "from top to bottom: red, blue on green",
         "avoid this: red on blue", "red at the bottom of blue", "exchange red with blue",
         "red away from blue", "red on the block that blue is on", "as many as possible on stack1",
-        "take red", "red off blue", "two red blocks on two blue blocks",
+        "take red", "two red blocks on two blue blocks",
         "red level with yellow, green above blue", "red same as blue, green on yellow",
         "everything else in stack1", "red at the bottom", "red at the bottom, blue on top of it",
         "red on top", "neither red on blue nor green", "red or blue not on green",

@@ -34,6 +34,10 @@ EXAMPLE: Final = "write relations like 'red on blue, green left of red'"
 _WANTS: Final = frozenset({"want", "wants"})
 _GOES: Final = frozenset({"go", "be", "sit", "stand", "come"})
 _ANY: Final = {"anything": "nothing", "any": "no"}
+_EDGES: Final = (
+    ("at", "top"), ("at", "very", "top"), ("on", "very", "top"), ("at", "bottom"),
+    ("at", "very", "bottom"), ("on", "very", "bottom"),
+)  # fmt: skip
 _SKIPPED: Final = MUTE | TAKES | {NEGATION}
 
 
@@ -48,6 +52,7 @@ class Said:
         clears: it says of the name that nothing stands on it.
         order: the names that follow are a tower or a row, see ``ORDERS``; None: they are not.
         asks: it has a verb, but no relation, as in "on blue, put red".
+        edge: "top" or "bottom" where its subject is said to be there, of the place that is meant.
         of_object: it says of its object how many subjects it has: "stack1 has two blocks".
     """
 
@@ -59,6 +64,7 @@ class Said:
     order: tuple[str, bool] | None = None
     asks: bool = False
     of_object: bool = False
+    edge: str | None = None
 
 
 def read_clause(text: str, words: list[Words]) -> Said:
@@ -71,6 +77,13 @@ def read_clause(text: str, words: list[Words]) -> Said:
         words = words[1:]
     if len(words) > 1 and words[0].text in STEPS and words[1].text in VERBS | TAKES:
         words = words[1:]
+    if words[-1].text == "either":
+        words = words[:-1] or words
+    for ending in _EDGES:
+        if tuple(item.text for item in words[-len(ending) :]) == ending and len(words) > len(
+            ending
+        ):
+            return replace(read_clause(text, words[: -len(ending)]), edge=ending[-1])
     if held := as_relation(words):
         return replace(read_clause(text, held), of_object=True)
     if order := [item for item in words if item.text in ORDERS]:
@@ -87,7 +100,8 @@ def read_clause(text: str, words: list[Words]) -> Said:
     if wants := [index for index, item in enumerate(before) if item.text in _WANTS]:
         # Who wants it is nothing that is on the table: "my students want red on blue".
         before = before[wants[-1] + 1 :] or before
-    if len(before) > 1 and before[-1].text == "both":  # "red and blue both in stack 1"
+    if len(before) > 1 and before[-1].text in ("both", "all"):
+        # "red and blue both in stack 1"
         before = before[:-1]
     if len(negated) == 1 and before and before[0].text in _ANY:
         # "do not put anything on red"

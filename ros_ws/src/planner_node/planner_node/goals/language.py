@@ -37,7 +37,7 @@ MUTE: Final = VERBS | {
     "too", "nice", "great", "your", "task", "goal", "next", "could", "wish", "maybe", "perhaps",
     "somewhere", "sir", "dear", "afterwards", "after", "quickly", "carefully", "gently", "do",
     "does", "did", "try", "may", "might", "well", "as", "down", "anywhere", "today", "pls",
-    "plz", "pleas", "was", "secondly", "thirdly", "lastly",
+    "plz", "pleas", "was", "secondly", "thirdly", "lastly", "together",
 }  # fmt: skip
 #: Join relations as a comma does.
 JOINS: Final = frozenset({"and", "adn", "then", "but", "while", "plus", "&"})
@@ -46,7 +46,7 @@ OPENINGS: Final = frozenset({"with", "where"})
 #: A clause of nothing else says nothing.
 POLITE: Final = frozenset({
     "please", "kindly", "hey", "hi", "hello", "robot", "ok", "okay", "thanks", "thx", "dear",
-    "sir", "now", "sure", "so", "well", "pleas", "plz", "pls",
+    "sir", "now", "sure", "so", "well", "pleas", "plz", "pls", "hmm", "hm", "um", "uh", "oh", "ah",
 })  # fmt: skip
 #: Words of a heading, as in "the goal for my class: red on blue"; all else before a colon counts.
 HEADING: Final = frozenset({
@@ -86,6 +86,7 @@ MODALS: Final = frozenset({
     "should", "shall", "must", "would", "stands", "standing", "sitting", "placed", "needs",
     "goes",
 })  # fmt: skip
+ALL_OF: Final = {"both": 2, "all three": 3, "all four": 4}
 ARTICLES: Final = frozenset({"the", "teh", "hte"})
 NEGATION: Final = "not"
 #: Words that hold a negation; with what is left of them.
@@ -99,6 +100,28 @@ STEPS: Final = frozenset({"second", "third", "fourth", "fifth", "last"})
 HOLDS: Final = frozenset({"have", "has", "contain", "contains", "hold", "holds"})
 #: Several words that stand for others, the longest first; looked for everywhere.
 MERGED: Final = {
+    ("i", "do", "not", "care", "which", "of", "two"): (),
+    ("in", "whatever", "order"): (),
+    ("in", "any", "order"): (),
+    ("order", "does", "not", "matter"): (),
+    ("let", "me", "think"): (),
+    ("let", "me", "see"): (),
+    ("thanks", "a", "lot"): (),
+    ("thank", "you", "very", "much"): (),
+    ("would", "you", "please"): (),
+    ("by", "itself"): ("alone",),
+    ("by", "themselves"): ("alone",),
+    ("on", "its", "own"): ("alone",),
+    ("off",): ("not", "on"),
+    ("off", "of"): ("not", "on"),
+    ("starting", "from", "bottom"): ("bottom-to-top",),
+    ("starting", "at", "bottom"): ("bottom-to-top",),
+    ("starting", "from", "top"): ("top-to-bottom",),
+    ("starting", "at", "top"): ("top-to-bottom",),
+    ("from", "bottom", "up"): ("bottom-to-top",),
+    ("from", "bottom", "upwards"): ("bottom-to-top",),
+    ("from", "top", "down"): ("top-to-bottom",),
+    ("from", "top", "downwards"): ("top-to-bottom",),
     ("i", "do", "not", "care", "which", "ones"): (),
     ("i", "do", "not", "care", "which", "one"): (),
     ("i", "do", "not", "care", "which"): (),
@@ -230,6 +253,7 @@ OTHER_WORDS: Final = frozenset({
     "plum", "lilac", "aqua", "azure", "bronze", "copper", "cream", "peach", "salmon", "tin",
     "bed", "glue", "line", "back", "ink", "pine", "bin", "can", "them", "they", "their",
     "there", "here", "these", "those", "which", "only", "same", "different",
+    "alone", "together", "either", "neither", "off",
 })  # fmt: skip
 #: "the left stack", "the middle place"; with what they are called.
 SIDES: Final = {

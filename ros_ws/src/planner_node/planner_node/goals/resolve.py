@@ -92,6 +92,8 @@ def _resolve_term(term: Term, names: Sequence[str], stack_count: int | None) -> 
         if stack_count is None:
             raise _unknown_place(term.words, None)
         return tuple(base_name(index) for index in range(stack_count))
+    if term.among:
+        return tuple(resolve_name(words, names, stack_count) for words in term.among)
     left_out = {resolve_name(words, names, stack_count) for words in term.but}
     return tuple(name for name in _fitting(term.words, names, stack_count) if name not in left_out)
 

@@ -29,8 +29,9 @@ from .terms import Words
 
 _TOKEN: Final = re.compile(
     r"(?P<word>[^\W_](?:[\w-]|['’](?=\w))*|&)|(?P<end>[.;!?])|(?P<comma>[,:])"
-    r"|(?P<arrow>[-=]+>|→)|(?P<other>\S)"
+    r"|(?P<arrow>[-=]+>|→)|(?P<dash>[-–—]+(?=\s))|(?P<other>\S)"
 )
+_YOU: Final = frozenset({"would", "could", "will", "can", "you"})
 _LONGEST: Final = max(map(len, MERGED))
 
 
@@ -49,7 +50,7 @@ def sentences(text: str) -> Iterator[list[list[Words]]]:
             # "stack 1: red" is a sentence of its own.
             yield from _finished(clauses[:-1])
             clauses = [place, []]
-        elif match["comma"]:
+        elif match["comma"] or match["dash"]:
             if match["comma"] == ":" and is_heading(_merged(clauses[-1])):
                 clauses.pop()
             clauses.append([])
@@ -81,6 +82,8 @@ def _with_order(clauses: Sequence[list[Words]]) -> list[list[Words]]:
         place = len(before) > 1 and before[0].text in ("in", "on", "at")
         if ordered and place and _place_heading(before[1:]):
             result[-1] = [*before, *clause]
+        elif ordered and before and is_heading(before):
+            result[-1] = clause  # "please stack, starting from the bottom"
         else:
             result.append(clause)
     return result
@@ -141,6 +144,8 @@ def _side_of_the_row(words: Sequence[Words]) -> Words | None:
 def _says_nothing(clause: Sequence[Words]) -> bool:
     if clause and clause[0].text == "for" and is_heading(clause):
         return True  # "for the experiment"
+    if any(item.text == "you" for item in clause):
+        return all(item.text in POLITE | _YOU for item in clause)  # "would you?"
     return all(item.text in POLITE for item in clause)
 
 

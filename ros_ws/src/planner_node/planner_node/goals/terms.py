@@ -79,6 +79,8 @@ class Term:
         but: of EVERY, those that are left out.
         others: of EVERY and NO, those that were named are left out.
         only: of THE, nothing else is there.
+        listed: of COUNT, the names that follow are the ones that are counted.
+        among: of COUNT, those that are counted; none: all that fit.
     """
 
     words: Words
@@ -88,6 +90,8 @@ class Term:
     but: tuple[Words, ...] = ()
     others: bool = False
     only: bool = False
+    listed: bool = False
+    among: tuple[Words, ...] = ()
 
     @property
     def is_place(self) -> bool:
@@ -145,8 +149,9 @@ def term_of(words: Sequence[Words]) -> Term:
         return Term(Words("block", offset), Kind.NO, 0, 0, others=True)
     if texts[0] in ("this", "that") and len(texts) > 1:
         return term_of(words[1:])
-    if texts[0] == "only" and len(texts) > 1 and _quantity(texts)[0] is Kind.THE:
-        alone = term_of(words[1:])
+    first = texts[0] == "only" and len(texts) > 1 and _quantity(texts)[0] is Kind.THE
+    if first or (texts[-1] == "alone" and len(texts) > 1):
+        alone = term_of(words[1:] if first else words[:-1])
         if alone.kind is not Kind.THE:
             raise InvalidGoalError(
                 "it is not clear what 'only' is said of; name the blocks", offset, whole.text
@@ -161,8 +166,12 @@ def term_of(words: Sequence[Words]) -> Term:
     if texts[0] == "both":
         texts = ["all", *texts[1:]]
     kind, least, most, used = _quantity(texts)
+    listed = False
     if used and used < len(texts) and texts[used] == "of":
         used += 1
+        listed = kind is Kind.COUNT and texts[-1] not in PLURALS
+    others = used < len(texts) - 1 and texts[used] == "other" and kind is not Kind.THE
+    used += others  # "any other block"
     rest = texts[used:]
     if kind is Kind.THE and rest[-1] in PLURALS:
         kind = Kind.EVERY
@@ -172,12 +181,15 @@ def term_of(words: Sequence[Words]) -> Term:
         rest = ["block"]
     start = words[used].offset if used < len(words) else offset
     name = Words(" ".join(PLURALS.get(text, text) for text in rest), start)
-    return Term(name, kind, least, most)
+    return Term(name, kind, least, most, others=others, listed=listed)
 
 
 def _quantity(texts: Sequence[str]) -> tuple[Kind, int, int | None, int]:
     """The kind, the bounds, and how many words say so."""
     first = texts[0]
+    if len(texts) > 1 and first in _ALONE and first not in ("none", "all"):
+        kind = _ALONE[first]  # "anything red"
+        return kind, int(kind is not Kind.NO), 0 if kind is Kind.NO else None, 1
     if first in _EVERY:
         return Kind.EVERY, 1, None, 1
     if first in _NO:

@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The relations that were read so far, and who was spoken of: what "it" and "both" stand for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+from scene_graph import ABOVE, BESIDE, LEFT, PREDICATES, UP, Phrase
+
+from ..errors import InvalidGoalError
+from .clauses import Said, no_relation
+from .language import ALL_OF, BOTH, DIFFERENT_PLACES, EACH_OTHER, IT, SAME_PLACE
+from .objections import check_places, unclear
+from .parsed import ParsedRelation, counted, in_one_place, none_but
+from .terms import Kind, Term, Words
+
+
+class Told:
+    """What a goal has said so far.
+
+    Attributes:
+        relations: what was read.
+        subjects, object, link: of the last relation; before a sentence's first one, of the
+            sentence before.
+    """
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+        self.relations: list[ParsedRelation] = []
+        self.subjects: list[Term] = []
+        self.object: Term | None = None
+        self.link: tuple[Phrase, bool, Words] | None = None
+        #: All blocks that were named, by their words.
+        self._named: dict[str, Term] = {}
+
+    def all_named(self, term: Term) -> list[Term]:
+        """The blocks that "both" or "all three" stands for: those that were named, if so many."""
+        number = ALL_OF.get(term.words.text, 2)
+        if len(self._named) != number:
+            raise unclear(term)
+        return list(self._named.values())
+
+    def meant(self, term: Term, phrase: Phrase | None, carried: bool = False) -> Term:
+        """A name itself; for "it" the one that it can only stand for.
+
+        Args:
+            phrase: the relation whose object it is; None for a subject.
+            carried: the relation's subject is that of the one before.
+        """
+        if term.words.text not in IT:
+            return term
+        if phrase is not None and phrase.needs_place and self.object and self.object.is_place:
+            return self.object  # "two in the left stack, and red at the bottom of it"
+        subject = self.subjects[0] if len(self.subjects) == 1 else None
+        found: Term | None = None
+        if self.object is None or self.object.is_place:
+            found = subject
+        elif phrase is not None and carried:
+            found = self.object
+        elif phrase == Phrase(PREDICATES[UP]) and self.link is not None:
+            # On what already carries a block nothing else can be put.
+            before, denied, _ = self.link
+            found = subject if before == phrase and not denied else None
+        if found is None or found.kind is not Kind.THE:
+            raise unclear(term)
+        return found
+
+    def clear(self, term: Term) -> None:
+        """Adds that nothing stands on it."""
+        nothing = Term(Words("block", term.words.offset), Kind.NO, 0, 0)
+        self.relations.append(ParsedRelation(nothing, Phrase(PREDICATES[UP]), term))
+
+    def add_links(self, subjects: Sequence[Term], clause: Said) -> None:
+        """The relations of a chain, "red on blue on green"."""
+        links = clause.links
+        for (phrase, denied, object_, _), (other, _, _, written) in pairwise(links):
+            # Where it can be read as said of the first as well, and that is something else, it is
+            # asked back: "put red left of blue on stack1".
+            same = phrase == other and phrase.predicate.name in (UP, ABOVE, LEFT)
+            onto = phrase.predicate.name == UP and not phrase.inverse
+            if denied or object_.kind is not Kind.THE or not (same or onto):
+                raise InvalidGoalError(
+                    "a second relation starts here; separate relations by a comma or 'and'",
+                    written.offset,
+                    written.text,
+                )
+        carried = clause.subject is None
+        for phrase, denied, object_, written in links:
+            if object_.words.text in EACH_OTHER:
+                if len(subjects) != 2 or phrase.predicate.name != BESIDE:
+                    raise unclear(object_)
+                subjects, objects = subjects[:1], subjects[1:]
+            elif self._about_one_place(subjects, phrase, denied, object_):
+                continue
+            elif object_.words.text in BOTH:
+                objects = self.all_named(object_)
+            else:
+                objects = [self.meant(object_, phrase, carried)]
+            for one in objects:
+                self.add(subjects, phrase, denied, written, one)
+            self.subjects, self.object = list(subjects), objects[-1]
+            self.link = (phrase, denied, written)
+            subjects, carried = objects[-1:], False
+        if clause.of_object:
+            # Of whom it was said is who is spoken of.
+            self.subjects, self.object = objects[-1:], None
+
+    def add_edge(self, subjects: Sequence[Term], clause: Said) -> None:
+        """The relations of "red at the bottom", "red at the top of it"."""
+        first = clause.words[0]
+        if len(subjects) != 1 or len(clause.links) > 1:
+            raise no_relation(self._text, clause.words)
+        place, denied, written = self.object, False, first
+        if clause.links:
+            _, denied, place, written = clause.links[0]
+        if place is None or not place.is_place or place.is_every_place or denied:
+            raise no_relation(self._text, clause.words)
+        bottom = clause.edge == "bottom"
+        phrase = Phrase(PREDICATES[UP if bottom else ABOVE])
+        self.add(subjects, phrase, False, written, place)
+        if not bottom:
+            self.clear(subjects[0])
+        self.subjects, self.object, self.link = list(subjects), place, (phrase, False, written)
+
+    def _about_one_place(
+        self, subjects: Sequence[Term], phrase: Phrase, denied: bool, object_: Term
+    ) -> bool:
+        """Adds the relations of "red and blue in the same stack"; False where it says no such."""
+        text = object_.words.text
+        blocks = list(subjects)
+        with_other = next((head for head in SAME_PLACE if text.startswith(f"{head} as ")), None)
+        if with_other is not None:
+            rest = text.removeprefix(f"{with_other} as ")
+            blocks.append(self.meant(Term(Words(rest, object_.words.offset)), phrase))
+        elif text in SAME_PLACE | DIFFERENT_PLACES:
+            if len(blocks) == 1 and self.object is not None and not self.object.is_place:
+                blocks.append(self.object)  # "red under blue, in the same stack"
+        else:
+            return False
+        relations = in_one_place(blocks, text not in DIFFERENT_PLACES, denied)
+        if relations is None or phrase != Phrase(PREDICATES[ABOVE], needs_place=True):
+            raise unclear(object_)
+        self.relations += relations
+        self._named |= {term.words.text: term for term in blocks}
+        return True
+
+    def add(
+        self, subjects: Sequence[Term], phrase: Phrase, denied: bool, written: Words, object_: Term
+    ) -> None:
+        """Adds that every subject has a relation to an object.
+
+        Raises:
+            InvalidGoalError: it is not clear who is meant, or it cannot be said of a place.
+        """
+        counting = counted(subjects)
+        if counting is None or object_.listed:
+            raise unclear(object_ if object_.listed else subjects[0])
+        subjects = counting
+        if only := [subject for subject in subjects if subject.only]:
+            nothing_else = none_but(subjects, phrase, denied, object_)
+            if nothing_else is None:
+                raise unclear(only[0])
+            self.relations.append(nothing_else)
+        self._named |= {words.text: Term(words) for term in subjects for words in term.among}
+        for subject in subjects:
+            if subject.others:
+                if not self._named:
+                    raise unclear(subject)
+                if subject.kind is Kind.NO and set(self._named) != {
+                    term.words.text for term in self.subjects
+                }:
+                    # Who else was named may be meant as well.
+                    raise unclear(subject)
+                subject = replace(
+                    subject, others=False, but=tuple(term.words for term in self._named.values())
+                )
+            for term in (subject, object_):
+                if term.words.text in IT:
+                    raise unclear(term)
+                if term.kind is Kind.THE and not term.is_place:
+                    self._named.setdefault(term.words.text, term)
+            check_places(subject, phrase, object_, written.text)
+            meaning = phrase
+            together = subject.several or len(subjects) > 1
+            if together and object_.is_place and phrase == Phrase(PREDICATES[UP]) and not denied:
+                # Several blocks on a place cannot all stand directly on it.
+                meaning = phrase._replace(predicate=PREDICATES[ABOVE])
+            self.relations.append(ParsedRelation(subject, meaning, object_, denied))
