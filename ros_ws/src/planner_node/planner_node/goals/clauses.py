@@ -66,6 +66,12 @@ class Said:
     of_object: bool = False
     edge: str | None = None
 
+    def denies(self, subjects: Sequence[Term]) -> bool:
+        """Whether its last relation does not hold: a list behind it then may go on."""
+        return bool(self.links) and (
+            self.links[-1][1] or all(subject.kind is Kind.NO for subject in subjects)
+        )
+
 
 def read_clause(text: str, words: list[Words]) -> Said:
     """What a clause says by itself."""
@@ -77,6 +83,11 @@ def read_clause(text: str, words: list[Words]) -> Said:
         words = words[1:]
     if len(words) > 1 and words[0].text in STEPS and words[1].text in VERBS | TAKES:
         words = words[1:]
+    if over := [index for index, item in enumerate(words) if item.text == "at-top-of" and index]:
+        # "red at the top of stack1" is in it, and carries nothing.
+        where = words[over[0]]
+        inside = [*words[: over[0]], Words("in", where.offset, where.stop), *words[over[0] + 1 :]]
+        return replace(read_clause(text, inside), edge="top")
     if words[-1].text == "either":
         words = words[:-1] or words
     for ending in _EDGES:

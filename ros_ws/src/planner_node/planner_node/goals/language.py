@@ -37,7 +37,8 @@ MUTE: Final = VERBS | {
     "too", "nice", "great", "your", "task", "goal", "next", "could", "wish", "maybe", "perhaps",
     "somewhere", "sir", "dear", "afterwards", "after", "quickly", "carefully", "gently", "do",
     "does", "did", "try", "may", "might", "well", "as", "down", "anywhere", "today", "pls",
-    "plz", "pleas", "was", "secondly", "thirdly", "lastly", "together",
+    "plz", "pleas", "was", "secondly", "thirdly", "lastly", "together", "instead",
+    "itself", "themselves",
 }  # fmt: skip
 #: Join relations as a comma does.
 JOINS: Final = frozenset({"and", "adn", "then", "but", "while", "plus", "&"})
@@ -53,7 +54,7 @@ HEADING: Final = frozenset({
     "pile", "row", "line", "students", "student", "kids", "goal", "task", "tower",
     "arrangement", "setup", "configuration", "order", "plan", "target", "final", "my", "our",
     "for", "class", "demo", "experiment", "lesson", "a", "this", "one", "new", "layout",
-    "exercise", "of", "state",
+    "exercise", "of", "state", "sort", "like", "follows", "following", "them",
 })  # fmt: skip
 #: In which order a tower or a row is told: the relation of each to the one before, and whether the
 #: one before is its object.
@@ -99,9 +100,16 @@ STEPS: Final = frozenset({"second", "third", "fourth", "fifth", "last"})
 #: Say of a place how many blocks are in it, of a block what is on it.
 HOLDS: Final = frozenset({"have", "has", "contain", "contains", "hold", "holds"})
 #: Several words that stand for others, the longest first; looked for everywhere.
-MERGED: Final = {
+MERGED: Final[dict[tuple[str, ...], tuple[str, ...]]] = {
     ("i", "do", "not", "care", "which", "of", "two"): (),
     ("in", "whatever", "order"): (),
+    ("i", "would", "be", "happy", "if"): (),
+    ("i", "would", "be", "glad", "if"): (),
+    ("aswell",): (),
+    ("right", "at", "bottom"): ("at", "bottom"),
+    ("right", "at", "top"): ("at", "top"),
+    ("at", "top", "of"): ("at-top-of",),
+    ("at", "very", "top", "of"): ("at-top-of",),
     ("in", "any", "order"): (),
     ("order", "does", "not", "matter"): (),
     ("let", "me", "think"): (),
@@ -225,6 +233,10 @@ MERGED: Final = {
     ("make", "a", "tower"): ("build",),
     ("build", "a", "stack"): ("build",),
     ("make", "a", "stack"): ("build",),
+    ("second", "stack", "from", "left"): ("stack", "1"),
+    ("third", "stack", "from", "left"): ("stack", "2"),
+    ("second", "place", "from", "left"): ("stack", "1"),
+    ("third", "place", "from", "left"): ("stack", "2"),
 }  # fmt: skip
 
 #: Fit every object.

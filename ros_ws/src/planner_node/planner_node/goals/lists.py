@@ -19,10 +19,18 @@ def turned_at_comma(said: Sequence[Said]) -> list[Said]:
         # "in stack 1: red" as well, but not "red on blue, in stack 1, …".
         turned = clause.asks or (named and len(result) == 1 and not clause.clears)
         if turned and before is not None and before.links and before.subject is None:
-            result[-1] = replace(before, subject=clause.subject)
+            result[-1] = replace(before, subject=clause.subject, edge=clause.edge)
         else:
             result.append(clause)
     return result
+
+
+def row_of(said: Sequence[Said]) -> tuple[list[Said], list[Said]]:
+    """The names of a row, and what is said behind them: "red, blue, green, and green in stack1"."""
+    for number, clause in enumerate(said):
+        if clause.links or clause.clears or clause.takes:
+            return list(said[:number]), list(said[number:])
+    return list(said), []
 
 
 def is_listed(following: Sequence[Said]) -> bool:

@@ -19,7 +19,7 @@ from scene_graph import PREDICATES, UP, Phrase
 from ..errors import InvalidGoalError
 from .clauses import EXAMPLE, Said, no_relation, read_clause
 from .language import ALL_OF, BOTH, IT
-from .lists import is_listed, turned_at_comma
+from .lists import is_listed, row_of, turned_at_comma
 from .objections import unclear, untold
 from .parsed import ParsedRelation
 from .sentences import is_heading, sentences
@@ -64,8 +64,9 @@ class _Reader:
         said = turned_at_comma(sentence)
         for number, clause in enumerate(said):
             if clause.order is not None:
-                self._read_row(clause, clause.order, said[number + 1 :])
-                said = [other for other in said[:number] if not is_heading(other.words)]
+                names, rest = row_of(said[number + 1 :])
+                self._read_row(clause, clause.order, names)
+                said = [*(other for other in said[:number] if not is_heading(other.words)), *rest]
                 break
         waiting: list[Said] = []
         subjects: list[Term] = []
@@ -112,6 +113,11 @@ class _Reader:
                 waiting.append(clause)
             elif last is not None and last.clears:
                 self._told.clear(clause.subject)
+            elif last is not None and last.edge is not None:
+                self._told.add_next(clause.subject, last.edge == "bottom")
+            elif last is not None and last.denies(subjects):
+                assert self._told.link is not None
+                self._told.add(subjects, *self._told.link, clause.subject)
             elif last is not None and last.links[-1][0] == Phrase(PREDICATES[UP]):
                 # Nothing stands directly on two.
                 raise no_relation(self._text, clause.words)
@@ -134,7 +140,7 @@ class _Reader:
     def _read_row(self, heading: Said, order: tuple[str, bool], names: Sequence[Said]) -> None:
         """The relations of "from bottom to top in stack 1: red, green, blue"."""
         predicate, ascending = order
-        if unfit := [item for item in names if item.subject is None or item.links or item.clears]:
+        if unfit := [item for item in names if item.subject is None]:
             raise no_relation(self._text, unfit[0].words)
         blocks = [item.subject for item in (heading, *names) if item.subject is not None]
         if len(blocks) < 2 or any(block.kind is not Kind.THE or block.is_place for block in blocks):

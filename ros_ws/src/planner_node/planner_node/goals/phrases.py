@@ -10,14 +10,18 @@ from typing import Final
 from scene_graph import COLORS, PREDICATES, SHAPES, Phrase
 
 from .language import (
+    ARTICLES,
     CLEAR,
     JOINS,
+    MERGED,
     MUTE,
     NOUNS,
     NUMBERS,
     OPENINGS,
     OTHER_WORDS,
+    PLACE_NOUNS,
     PLURALS,
+    SIDES,
     SYNONYMS,
     TAKES,
     meant,
@@ -35,6 +39,37 @@ RIGHT_WORDS: Final = frozenset().union(
     NUMBERS, {"not", "it", "of", "no"},
 )  # fmt: skip
 _Phrases = Mapping[tuple[str, ...], Phrase]
+
+#: Words that a slip of the fingers is looked for in every word.
+_COMMON: Final = frozenset(
+    word
+    for word in RIGHT_WORDS.union(*MERGED, *PREDICATES.phrases, PLACE_NOUNS, SIDES) - OTHER_WORDS
+    if len(word) >= 4 and word.isalpha() and word not in COLORS and word not in SHAPES
+)
+_NO_SLIP: Final = RIGHT_WORDS.union(COLORS, SHAPES, *MERGED, *PREDICATES.phrases, ARTICLES, JOINS)
+
+
+def without_slip(word: str) -> str:
+    """A common word of goals without a slip: two letters exchanged, one left out or doubled.
+
+    Another letter in its place is no slip: that makes other words of it.
+    """
+    if len(word) < 4 or word in _NO_SLIP or not word.isalpha():
+        return word
+    slips = {word[:at] + word[at + 1] + word[at] + word[at + 2 :] for at in range(len(word) - 1)}
+    found = slips & _COMMON
+    if not found and len(word) >= 5:
+        found = {
+            word[:at] + word[at + 1 :] for at in range(1, len(word)) if word[at] == word[at - 1]
+        } & _COMMON
+    if not found and len(word) >= 5:
+        found = {
+            known
+            for known in _COMMON
+            if len(known) == len(word) + 1
+            and any(known[:at] + known[at + 1 :] == word for at in range(1, len(known)))
+        }
+    return found.pop() if len(found) == 1 else word
 
 
 @dataclass(frozen=True)

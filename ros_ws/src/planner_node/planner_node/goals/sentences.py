@@ -7,6 +7,8 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Final
 
+from scene_graph import PREDICATES
+
 from ..errors import InvalidGoalError
 from .language import (
     ARTICLES,
@@ -15,6 +17,7 @@ from .language import (
     MERGED,
     MUTE,
     NEGATION,
+    NOUN_VERBS,
     NUMBERS,
     OPENINGS,
     ORDERS,
@@ -24,7 +27,7 @@ from .language import (
     SIDES,
     meant,
 )
-from .phrases import RIGHT_WORDS
+from .phrases import RIGHT_WORDS, find, without_slip
 from .terms import Words
 
 _TOKEN: Final = re.compile(
@@ -32,6 +35,7 @@ _TOKEN: Final = re.compile(
     r"|(?P<arrow>[-=]+>|→)|(?P<dash>[-–—]+(?=\s))|(?P<other>\S)"
 )
 _YOU: Final = frozenset({"would", "could", "will", "can", "you"})
+_DENYING: Final = frozenset({NEGATION, "nothing", "none"})
 _LONGEST: Final = max(map(len, MERGED))
 
 
@@ -62,12 +66,26 @@ def sentences(text: str) -> Iterator[list[list[Words]]]:
 def _finished(clauses: Sequence[list[Words]]) -> Iterator[list[list[Words]]]:
     """The sentence of these clauses; none where they say nothing."""
     if kept := [clause for clause in map(_merged, clauses) if not _says_nothing(clause)]:
-        parts = [part for clause in _with_order(kept) for part in _split_negation(clause)]
+        parts: list[list[Words]] = []
+        denied = False
+        for clause in _with_order(kept):
+            parts += _split_negation(clause, denied)
+            # "nothing on red, green or blue"
+            denied = any(item.text in _DENYING for item in clause) or (
+                denied and not _has_phrase(clause)
+            )
         yield _as_tower(parts)
 
 
+def _has_phrase(clause: Sequence[Words]) -> bool:
+    return any(True for _ in find(clause, PREDICATES.phrases))
+
+
 def _place_heading(clause: list[Words]) -> list[Words] | None:
-    """ "in stack 1" for "stack 1" in front of a colon; None for all else."""
+    """ "in stack 1" for "stack 1" or "a tower in stack 1" before a colon; None for all else."""
+    clause = [item for item in clause if item.text not in (HEADING | MUTE) - NOUN_VERBS]
+    if len(clause) > 1 and clause[0].text in ("in", "on", "at"):
+        clause = clause[1:]
     if clause and Words(" ".join(item.text for item in clause), clause[0].offset).is_place:
         return [Words("in", clause[0].offset, clause[0].offset), *clause]
     return None
@@ -101,7 +119,7 @@ def _words(word: str, offset: int) -> list[Words]:
     head, mark, tail = word.partition("'")
     end = offset + len(word)
     if not mark:
-        return [Words(word, offset)]
+        return [Words(without_slip(word), offset, end)]
     if tail == "t":
         # "can't" and "won't" lose more than the others.
         verb = {"can": "could", "won": "will"}.get(head, head.removesuffix("n"))
@@ -167,10 +185,26 @@ def _split(clauses: Sequence[list[Words]]) -> Iterator[list[Words]]:
             yield part
 
 
-def _split_negation(clause: list[Words]) -> Iterator[list[Words]]:
-    """Once more, with "neither … nor" and "not … or" as a list that is denied."""
+def _split_negation(clause: list[Words], denied: bool) -> Iterator[list[Words]]:
+    """Once more, with "neither … nor" and "not … or" as a list that is denied.
+
+    Args:
+        denied: whether the clause before is.
+    """
     texts = [item.text for item in clause]
     neither = "neither" in texts and "nor" in texts
+    nothing = "or" in texts and "nothing" in texts[: texts.index("or")]
+    if nothing or (denied and "or" in texts and NEGATION not in texts and not _has_phrase(clause)):
+        # What is not on red or blue is on none of them.
+        yield from _split(
+            [
+                [
+                    Words("and", item.offset, item.stop) if item.text == "or" else item
+                    for item in clause
+                ]
+            ]
+        )
+        return
     if not neither and not (NEGATION in texts and "or" in texts[texts.index(NEGATION) :]):
         yield from _split([clause])
         return

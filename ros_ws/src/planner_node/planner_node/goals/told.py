@@ -11,7 +11,7 @@ from scene_graph import ABOVE, BESIDE, LEFT, PREDICATES, UP, Phrase
 
 from ..errors import InvalidGoalError
 from .clauses import Said, no_relation
-from .language import ALL_OF, BOTH, DIFFERENT_PLACES, EACH_OTHER, IT, SAME_PLACE
+from .language import ALL_OF, BOTH, DIFFERENT_PLACES, EACH_OTHER, IT, PLACE_NOUNS, SAME_PLACE
 from .objections import check_places, unclear
 from .parsed import ParsedRelation, counted, in_one_place, none_but
 from .terms import Kind, Term, Words
@@ -105,7 +105,7 @@ class Told:
             subjects, carried = objects[-1:], False
         if clause.of_object:
             # Of whom it was said is who is spoken of.
-            self.subjects, self.object = objects[-1:], None
+            self.subjects, self.object = list(objects[-1:]), None
 
     def add_edge(self, subjects: Sequence[Term], clause: Said) -> None:
         """The relations of "red at the bottom", "red at the top of it"."""
@@ -123,6 +123,14 @@ class Told:
         if not bottom:
             self.clear(subjects[0])
         self.subjects, self.object, self.link = list(subjects), place, (phrase, False, written)
+
+    def add_next(self, block: Term, upwards: bool) -> None:
+        """The next one of "red at the bottom, then blue, then green"."""
+        if block.kind is not Kind.THE or block.is_place or len(self.subjects) != 1:
+            raise unclear(block)
+        phrase = Phrase(PREDICATES[UP], inverse=not upwards)
+        self.add([block], phrase, False, block.words, self.subjects[0])
+        self.subjects = [block]
 
     def _about_one_place(
         self, subjects: Sequence[Term], phrase: Phrase, denied: bool, object_: Term
@@ -158,6 +166,16 @@ class Told:
         if counting is None or object_.listed:
             raise unclear(object_ if object_.listed else subjects[0])
         subjects = counting
+        if len(subjects) > 1 and subjects[-1].kind is Kind.NO and subjects[-1].others:
+            # "red and nothing else in stack1"
+            subjects = [replace(subject, only=True) for subject in subjects[:-1]]
+        bounded = all(term.kind is Kind.COUNT and not term.least for term in subjects)
+        if (
+            object_.words.text in PLACE_NOUNS
+            and object_.kind is Kind.COUNT
+            and (bounded or all(term.kind is Kind.NO for term in subjects))
+        ):
+            object_ = replace(object_, kind=Kind.EVERY)  # "at most two blocks in any stack"
         if only := [subject for subject in subjects if subject.only]:
             nothing_else = none_but(subjects, phrase, denied, object_)
             if nothing_else is None:
