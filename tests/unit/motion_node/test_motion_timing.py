@@ -37,7 +37,7 @@ def some_limits(seed: int, joints: int) -> JointLimits:
 
 
 @settings(max_examples=30, deadline=None)
-@given(st.integers(0, 10**6), st.integers(1, 7), st.integers(1, 8))
+@given(st.integers(0, 10**6), st.integers(1, 7), st.integers(2, 8))
 def test_the_limits_hold_everywhere_between_two_rests(seed: int, joints: int, parts: int) -> None:
     q, limits = some_paths(seed, joints, 3), some_limits(seed, joints)
     for path, way in zip(q, fastest(q, limits, TimeGrid(parts))):

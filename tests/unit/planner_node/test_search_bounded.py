@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import random
+from collections import deque
 
 import pytest
 from planner_states import NAMES, distance, random_state, relation_holds
@@ -11,9 +12,11 @@ from planner_states import NAMES, distance, random_state, relation_holds
 from planner_node.errors import SearchCancelledError, SearchLimitError
 from planner_node.goals import Goal, complete_goal
 from planner_node.search import make_plan, search
-from planner_node.search.construct import constructed, window_of
+from planner_node.search.construct import constructed
+from planner_node.search.limits import Limits
+from planner_node.search.reinsertion import Reinsertion, shortened, steps_of
 from planner_node.validator import validate_plan
-from scene_graph import Relation, Stacks, apply_move
+from scene_graph import Move, Relation, Stacks, apply_move
 
 
 def many(count: int) -> tuple[str, ...]:
@@ -86,20 +89,57 @@ def test_a_constructed_plan_leads_to_the_target(places: int, seed: int) -> None:
     validate_plan(initial, complete_goal(target), moves)
 
 
-def test_a_stretch_leaves_out_what_stays() -> None:
-    initial, target = problem(12, 3, 2)
-    states = [initial]
-    for move in constructed(initial, target, random.Random(0)):
-        states.append(apply_move(states[-1], move))
-    for first in range(0, len(states) - 1, 3):
-        last, start, end = window_of(states, first, 4)
-        inside = {name for stack in start for name in stack}
-        assert last > first
-        assert len(inside) <= 4
-        assert inside == {name for stack in end for name in stack}
-        for part, whole in ((start, states[first]), (end, states[last])):
-            for ours, stack in zip(part, whole):
-                assert ours == stack[len(stack) - len(ours) :]
+@pytest.mark.parametrize("places", [3, 4, 6])
+@pytest.mark.parametrize("seed", range(20))
+def test_reinsertion_leads_to_the_target_with_no_more_moves(places: int, seed: int) -> None:
+    initial, target = problem(9, places, seed)
+    moves = constructed(initial, target, random.Random(seed))
+    shorter = shortened(initial, target, moves, 0, 2_000, Limits(initial, complete_goal(target)))
+    validate_plan(initial, complete_goal(target), shorter)
+    assert len(shorter) <= len(moves)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_one_block_is_put_back_with_the_fewest_moves(seed: int) -> None:
+    """Among the moves of all others, which stay: breadth-first search says how few there can be."""
+    initial, target = problem(5, 3, seed)
+    moves = constructed(initial, target, random.Random(seed))
+    steps = steps_of(initial, moves)
+    reinsertion = Reinsertion(initial, target)
+    for name in {step.block for step in steps}:
+        again = reinsertion.again(steps, [name])
+        assert again is not None
+        others = [(step.source, step.target) for step in steps if step.block != name]
+        assert [(s.source, s.target) for s in again if s.block != name] == others
+        validate_plan(initial, complete_goal(target), [Move(s.source, s.target) for s in again])
+        assert len(again) - len(others) == fewest_among(initial, target, name, others)
+
+
+def fewest_among(initial: Stacks, target: Stacks, name: str, others: list[tuple[int, int]]) -> int:
+    """Moves of one block that let the others' moves happen in their order."""
+    queue = deque([(initial, 0, 0)])
+    best: dict[tuple[Stacks, int], int] = {(initial, 0): 0}
+    while queue:
+        stacks, done, own = queue.popleft()
+        if best[stacks, done] < own:
+            continue
+        following = []
+        if done < len(others):
+            source, to = others[done]
+            if stacks[source] and stacks[source][-1] != name:
+                following.append((apply_move(stacks, Move(source, to)), done + 1, own))
+        for source, stack in enumerate(stacks):
+            if stack and stack[-1] == name:
+                following += [
+                    (apply_move(stacks, Move(source, to)), done, own + 1)
+                    for to in range(len(stacks))
+                    if to != source
+                ]
+        for after, count, cost in following:
+            if cost < best.get((after, count), 99):
+                best[after, count] = cost
+                queue.append((after, count, cost))
+    return best[target, len(others)]
 
 
 def test_two_blocks_among_thirty_are_planned_for_with_the_fewest_moves() -> None:

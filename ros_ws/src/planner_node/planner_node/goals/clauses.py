@@ -10,22 +10,21 @@ from typing import Final
 from scene_graph import PREDICATES, SHAPES, UP, Phrase
 
 from ..errors import InvalidGoalError
-from .holdings import as_relation
 from .language import (
     CLEAR,
     HEADING,
+    IT,
     MUTE,
     NEGATION,
     NOUN_VERBS,
     NOUNS,
     NUMBERS,
     ORDERS,
-    STEPS,
     TAKES,
-    VERBS,
     meant,
 )
 from .phrases import RIGHT_WORDS, Found, find, phrases_in
+from .plainer import plainer
 from .sentences import end_of
 from .terms import Kind, Term, Words, term_of
 
@@ -34,10 +33,6 @@ EXAMPLE: Final = "write relations like 'red on blue, green left of red'"
 _WANTS: Final = frozenset({"want", "wants"})
 _GOES: Final = frozenset({"go", "be", "sit", "stand", "come"})
 _ANY: Final = {"anything": "nothing", "any": "no"}
-_EDGES: Final = (
-    ("at", "top"), ("at", "very", "top"), ("on", "very", "top"), ("at", "bottom"),
-    ("at", "very", "bottom"), ("on", "very", "bottom"),
-)  # fmt: skip
 _SKIPPED: Final = MUTE | TAKES | {NEGATION}
 
 
@@ -53,6 +48,7 @@ class Said:
         order: the names that follow are a tower or a row, see ``ORDERS``; None: they are not.
         asks: it has a verb, but no relation, as in "on blue, put red".
         edge: "top" or "bottom" where its subject is said to be there, of the place that is meant.
+        adjacent: it says "directly left of": the places are neighbours too.
         of_object: it says of its object how many subjects it has: "stack1 has two blocks".
     """
 
@@ -65,6 +61,7 @@ class Said:
     asks: bool = False
     of_object: bool = False
     edge: str | None = None
+    adjacent: bool = False
 
     def denies(self, subjects: Sequence[Term]) -> bool:
         """Whether its last relation does not hold: a list behind it then may go on."""
@@ -81,22 +78,16 @@ def read_clause(text: str, words: list[Words]) -> Said:
         words = words[2:]
     if words[0].text == "can" and any(item.text in _GOES for item in words):
         words = words[1:]
-    if len(words) > 1 and words[0].text in STEPS and words[1].text in VERBS | TAKES:
-        words = words[1:]
-    if over := [index for index, item in enumerate(words) if item.text == "at-top-of" and index]:
-        # "red at the top of stack1" is in it, and carries nothing.
-        where = words[over[0]]
-        inside = [*words[: over[0]], Words("in", where.offset, where.stop), *words[over[0] + 1 :]]
-        return replace(read_clause(text, inside), edge="top")
-    if words[-1].text == "either":
-        words = words[:-1] or words
-    for ending in _EDGES:
-        if tuple(item.text for item in words[-len(ending) :]) == ending and len(words) > len(
-            ending
-        ):
-            return replace(read_clause(text, words[: -len(ending)]), edge=ending[-1])
-    if held := as_relation(words):
-        return replace(read_clause(text, held), of_object=True)
+    if plain := plainer(words):
+        said = read_clause(text, plain.words)
+        if plain.adjacent and (len(said.links) != 1 or said.links[0][1]):
+            raise no_relation(text, words)
+        return replace(
+            said,
+            edge=plain.edge or said.edge,
+            adjacent=plain.adjacent or said.adjacent,
+            of_object=plain.of_object or said.of_object,
+        )
     if order := [item for item in words if item.text in ORDERS]:
         return _tower(text, words, order[0])
     words, found = phrases_in(words)
@@ -111,6 +102,9 @@ def read_clause(text: str, words: list[Words]) -> Said:
     if wants := [index for index, item in enumerate(before) if item.text in _WANTS]:
         # Who wants it is nothing that is on the table: "my students want red on blue".
         before = before[wants[-1] + 1 :] or before
+    if negated and before and before[0].offset < negated[0].offset < before[-1].offset:
+        # "the boxes not red"
+        raise InvalidGoalError("it is not clear what 'not' is said of", negated[0].offset, NEGATION)
     if len(before) > 1 and before[-1].text in ("both", "all"):
         # "red and blue both in stack 1"
         before = before[:-1]
@@ -141,7 +135,8 @@ def read_clause(text: str, words: list[Words]) -> Said:
         links = [(links[0][0], links[0][1], objects, links[0][3])]
     read = []
     for item, denied, between, written in links:
-        between = _without_ends(between)
+        if not (len(between) == 1 and between[0].text in IT):
+            between = _without_ends(between)
         if not between:
             raise _missing("after", text, words, item)
         read.append((item.phrase, denied, term_of(between), written))
@@ -187,6 +182,8 @@ def _turned(words: Sequence[Words]) -> tuple[list[Words], list[Words]] | None:
     """Object and subject of "on OBJECT put SUBJECT": on either side of a verb."""
     if not words:
         return None
+    if words[0].text in IT and (named := [item for item in words[1:] if item.text not in MUTE]):
+        return [words[0]], named  # "on that the red one"
     verbs = [
         index
         for index, item in enumerate(words)

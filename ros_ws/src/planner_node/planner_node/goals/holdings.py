@@ -46,7 +46,8 @@ def as_relation(words: Sequence[Words]) -> list[Words] | None:
             if fewer is None or (whose[0].text == "no" and denied):
                 return None
             held = fewer
-        return [*held, Words("in", held[0].offset), *place]
+        inside = "at-top-of" if there[-1:] == ("top",) else "in"
+        return [*held, Words(inside, held[0].offset), *place]
     # "red has nothing on it": of blocks only what is on them.
     if denied or not there or there[0] != "on":
         return None

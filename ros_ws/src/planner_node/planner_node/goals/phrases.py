@@ -13,7 +13,6 @@ from .language import (
     ARTICLES,
     CLEAR,
     JOINS,
-    MERGED,
     MUTE,
     NOUNS,
     NUMBERS,
@@ -26,6 +25,7 @@ from .language import (
     TAKES,
     meant,
 )
+from .merged import MERGED
 from .terms import Words
 
 #: Words of phrases that a typo is looked for; the shorter ones are like too much.

@@ -14,7 +14,6 @@ from .language import (
     ARTICLES,
     HEADING,
     JOINS,
-    MERGED,
     MUTE,
     NEGATION,
     NOUN_VERBS,
@@ -27,6 +26,7 @@ from .language import (
     SIDES,
     meant,
 )
+from .merged import MERGED
 from .phrases import RIGHT_WORDS, find, without_slip
 from .terms import Words
 
@@ -175,7 +175,7 @@ def _split(clauses: Sequence[list[Words]]) -> Iterator[list[Words]]:
             if item.text in OPENINGS and all(word.text in MUTE for word in part):
                 # What is before is no relation, and none is missing.
                 part = []
-            elif item.text not in JOINS:
+            elif item.text not in JOINS and not (item.text in OPENINGS and _has_phrase(part)):
                 part.append(item)
             else:
                 if part and not _says_nothing(part):
@@ -216,9 +216,15 @@ def _split_negation(clause: list[Words], denied: bool) -> Iterator[list[Words]]:
         if item.text not in ("neither", NEGATION)
     ]
     parts = list(_split([joined]))
-    # The relation is in the last part, and with it what denies it.
-    yield from parts[:-1]
-    yield [denial, *parts[-1]]
+    with_phrase = [_has_phrase(part) for part in parts]
+    if neither and start == 0 and with_phrase[0] and not all(with_phrase):
+        # "neither red on blue nor green": on green, or the green one?
+        yield clause
+        return
+    for index, part in enumerate(parts):
+        # What denies is with every relation, or with the last part.
+        last = index == len(parts) - 1 and not any(with_phrase)
+        yield [denial, *part] if with_phrase[index] or last else part
 
 
 def _as_tower(clauses: list[list[Words]]) -> list[list[Words]]:

@@ -110,7 +110,7 @@ class Term:
 
 
 _EVERY: Final = frozenset({"every", "each", "all"})
-_SOME: Final = frozenset({"a", "an", "any", "some"})
+_SOME: Final = frozenset({"a", "an", "any", "some", "another"})
 _NO: Final = frozenset({"no", "none"})
 _ALONE: Final = {
     "everything": Kind.EVERY,
@@ -170,8 +170,10 @@ def term_of(words: Sequence[Words]) -> Term:
     if used and used < len(texts) and texts[used] == "of":
         used += 1
         listed = kind is Kind.COUNT and texts[-1] not in PLURALS
-    others = used < len(texts) - 1 and texts[used] == "other" and kind is not Kind.THE
-    used += others  # "any other block"
+    others = texts[0] == "another" or (
+        used < len(texts) - 1 and texts[used] == "other" and kind is not Kind.THE
+    )
+    used += others and texts[0] != "another"  # "any other block"
     rest = texts[used:]
     if kind is Kind.THE and rest[-1] in PLURALS:
         kind = Kind.EVERY

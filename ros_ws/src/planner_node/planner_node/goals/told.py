@@ -100,10 +100,12 @@ class Told:
                 objects = [self.meant(object_, phrase, carried)]
             for one in objects:
                 self.add(subjects, phrase, denied, written, one)
+                if clause.adjacent:
+                    self.add(subjects, Phrase(PREDICATES[BESIDE]), False, written, one)
             self.subjects, self.object = list(subjects), objects[-1]
             self.link = (phrase, denied, written)
             subjects, carried = objects[-1:], False
-        if clause.of_object:
+        if clause.of_object and not objects[-1].is_place:
             # Of whom it was said is who is spoken of.
             self.subjects, self.object = list(objects[-1:]), None
 

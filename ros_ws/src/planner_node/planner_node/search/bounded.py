@@ -2,8 +2,9 @@
 """A plan that is not much longer than a shortest one, with the proof of how much at most.
 
 Below: the blocks are split into parts that are small enough for shortest plans; the moves that
-every part needs by itself add up to a bound. Above: the best of many constructed plans, whose
-stretches are replaced by shortest ones until it is within :data:`ENOUGH` times the bound.
+every part needs by itself add up to a bound. Above: the best of many constructed plans, out of
+which blocks are taken and put back where they cost fewer moves, see
+:mod:`~planner_node.search.reinsertion`.
 """
 
 from __future__ import annotations
@@ -12,30 +13,26 @@ import random
 from itertools import combinations
 from typing import Final
 
-from scene_graph import Move, Stacks, apply_move
+from scene_graph import Move, Stacks
 
-from ..goals.goal import Goal, complete_goal
-from .construct import constructed, window_of
+from ..goals.goal import Goal
+from .construct import constructed
 from .ends import encoded_word, start_word
 from .groups import complete_groups, group_sizes
-from .limits import Limits, PartTooLargeError
-from .patterns_both_ends import moves_along, patterns_both_ends, states_along
+from .limits import Limits
+from .patterns_both_ends import patterns_both_ends, states_along
+from .reinsertion import shortened
 from .state import Problem, State
 from .wanted import Wanted
 
 #: A plan of this many times the proven bound is good enough.
-ENOUGH: Final = 1.25
+ENOUGH: Final = 1.05
 #: Blocks whose shortest plan is found at once.
 WHOLE: Final = 10
-#: Constructed plans each way, and those of them that are looked at further.
-CONSTRUCTED: Final = 150
-KEPT: Final = 4
-#: The rounds: plans that go on, and blocks that their stretches move at most. The patterns of many
-#: blocks on three places are few enough for long stretches.
-ROUNDS: Final = ((6, 6), (3, 8), (2, 10), (1, 10))
-ROUNDS_ON_THREE: Final = ((3, 6), (2, 9), (2, 12), (1, 13))
-#: States after which a stretch is left as it is.
-MAX_STRETCH_EXPANSIONS: Final = 60_000
+#: Constructed plans of which the shortest is looked at further.
+CONSTRUCTED: Final = 60
+#: Moves of plans that are looked at for each block, see :func:`shortened`.
+WORK_OF_A_BLOCK: Final = 12_000
 #: Patterns of a group of the split that is tried for the bound.
 GUIDE_PATTERNS: Final = 16_000
 
@@ -51,31 +48,19 @@ def bounded(problem: Problem, limits: Limits) -> list[State]:
         return patterns_both_ends(problem, limits)
     least = _least(problem, limits)
     limits.prove_at_least(least)
-    plans = [
-        plan
-        for one, other in ((problem.initial, target), (target, problem.initial))
-        for plan in _constructed(one, other, limits)
-    ]
-    # Every move can be undone: a plan from the goal to the start is one, read backwards.
-    plans = [plan if plan[0] == problem.initial else plan[::-1] for plan in plans]
-    # One of each, as several are often the same.
-    plans = list(dict.fromkeys(plans))
-    for kept, most_blocks in ROUNDS_ON_THREE if len(problem.start) == 3 else ROUNDS:
-        plans = sorted(plans, key=len)[:kept]
-        if len(plans[0]) - 1 <= ENOUGH * least:
-            break
-        plans = [_shortened(plan, most_blocks, limits) for plan in plans]
-    best = min(plans, key=len)
-    return states_along(problem.start, moves_along(best))
+    moves = _constructed(problem.initial, target, limits)
+    work = WORK_OF_A_BLOCK * len(names)
+    moves = shortened(problem.initial, target, moves, ENOUGH * least, work, limits)
+    return states_along(problem.start, moves)
 
 
-def _constructed(initial: Stacks, target: Stacks, limits: Limits) -> list[tuple[Stacks, ...]]:
-    """The shortest of many constructed plans, as states."""
+def _constructed(initial: Stacks, target: Stacks, limits: Limits) -> list[Move]:
+    """The shortest of many constructed plans."""
     plans = []
     for seed in range(CONSTRUCTED):
         limits.poll()
         plans.append(constructed(initial, target, random.Random(seed)))
-    return [tuple(_states(initial, plan)) for plan in sorted(plans, key=len)[:KEPT]]
+    return min(plans, key=len)
 
 
 def _least(problem: Problem, limits: Limits) -> int:
@@ -115,35 +100,6 @@ def _best_matching(gains: dict[tuple[int, int], int], left: frozenset[int]) -> i
             rest = _best_matching(gains, left - {one, other})
             best = max(best, gains[one, other] + rest)
     return best
-
-
-def _shortened(states: tuple[Stacks, ...], most_blocks: int, limits: Limits) -> tuple[Stacks, ...]:
-    """The plan with every stretch that can be replaced by a shorter one replaced."""
-    first = 0
-    while first < len(states) - 1:
-        last, start, end = window_of(states, first, most_blocks)
-        moves: list[Move] = []
-        if start != end:
-            part = limits.of_a_part(MAX_STRETCH_EXPANSIONS)
-            try:
-                moves = moves_along(patterns_both_ends(Problem(start, complete_goal(end)), part))
-            except PartTooLargeError:
-                # It stays as it is.
-                first += max(1, (last - first) // 3)
-                continue
-        if len(moves) < last - first:
-            states = (*states[:first], *_states(states[first], moves), *states[last + 1 :])
-        elif last == len(states) - 1:
-            break
-        first += max(1, len(moves) // 3)
-    return states
-
-
-def _states(initial: Stacks, moves: list[Move]) -> list[Stacks]:
-    states = [initial]
-    for move in moves:
-        states.append(apply_move(states[-1], move))
-    return states
 
 
 def _only(stacks: Stacks, names: set[str]) -> Stacks:

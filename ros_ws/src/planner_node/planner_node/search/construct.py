@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Sequence
 
 from scene_graph import Move, Stacks
 
@@ -100,26 +99,3 @@ class _Construction:
 
     def _place_of(self, block: str) -> int:
         return next(place for place, stack in enumerate(self._stacks) if block in stack)
-
-
-def window_of(states: Sequence[Stacks], first: int, most_blocks: int) -> tuple[int, Stacks, Stacks]:
-    """The longest stretch of a plan from a state on that moves no more than so many blocks.
-
-    Returns:
-        The index of its last state, and its first and last state without the blocks that stay:
-        these are below the others all the time.
-    """
-    moved: set[str] = set()
-    last = first
-    while last + 1 < len(states):
-        before, after = states[last], states[last + 1]
-        block = next(old[-1] for old, new in zip(before, after) if len(old) > len(new))
-        if block not in moved and len(moved) == most_blocks:
-            break
-        moved.add(block)
-        last += 1
-    ends = [
-        tuple(tuple(name for name in stack if name in moved) for stack in states[index])
-        for index in (first, last)
-    ]
-    return last, ends[0], ends[1]

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Clauses that say something besides their relation: where in a stack, side by side, of a place."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from .holdings import as_relation
+from .language import STEPS, TAKES, VERBS
+from .terms import Words
+
+_EDGES: Final = (
+    ("at", "top"), ("at", "very", "top"), ("on", "very", "top"), ("at", "bottom"),
+    ("at", "very", "bottom"), ("on", "very", "bottom"),
+)  # fmt: skip
+_EDGES: Final = (
+    ("at", "top"), ("at", "very", "top"), ("on", "very", "top"), ("at", "bottom"),
+    ("at", "very", "bottom"), ("on", "very", "bottom"),
+)  # fmt: skip
+_JUST: Final = {"just-left-of": "left", "just-right-of": "right"}
+
+
+@dataclass(frozen=True)
+class Plain:
+    """A clause in plainer words, and what else it says.
+
+    Attributes:
+        edge: "top" or "bottom" where it says that its subject is there.
+        adjacent: it says that left or right is meant of neighbouring places.
+        of_object: it was told of what is its object now.
+    """
+
+    words: list[Words]
+    edge: str | None = None
+    adjacent: bool = False
+    of_object: bool = False
+
+
+def plainer(words: Sequence[Words]) -> Plain | None:
+    """A clause with one turn less; None where it is plain already."""
+    texts = [item.text for item in words]
+    if len(words) > 1 and texts[0] in STEPS and texts[1] in VERBS | TAKES:
+        return Plain(list(words[1:]))
+    if "at-top-of" in texts[1:]:
+        # "red at the top of stack1" is in it, and carries nothing.
+        at = texts.index("at-top-of")
+        inside = Words("in", words[at].offset, words[at].stop)
+        return Plain([*words[:at], inside, *words[at + 1 :]], edge="top")
+    for text, side in _JUST.items():
+        if text in texts:
+            at = texts.index(text)
+            where = words[at]
+            phrase = [Words(side, where.offset, where.stop), Words("of", where.stop)]
+            return Plain([*words[:at], *phrase, *words[at + 1 :]], adjacent=True)
+    if texts[-1] == "either" and len(words) > 1:
+        return Plain(list(words[:-1]))
+    for ending in _EDGES:
+        if tuple(texts[-len(ending) :]) == ending and len(words) > len(ending):
+            return Plain(list(words[: -len(ending)]), edge=ending[-1])
+    if held := as_relation(words):
+        return Plain(held, of_object=True)
+    return None

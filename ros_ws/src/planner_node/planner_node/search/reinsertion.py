@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Shorter plans: blocks are taken out of a plan and put back where they cost the fewest moves.
+
+What a block costs among the moves of all others is found exactly, by dynamic programming over
+these moves. A plan gets shorter as long as there are few blocks that are moved too often together.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+from scene_graph import Move, Stacks
+
+from .limits import Limits
+
+#: Blocks that are taken out together at most, and how far from each other they stand at the end
+#: where they are chosen from one stack.
+MOST_OUT: Final = 3
+NEAR: Final = 2
+#: How often a plan goes on that is one move longer.
+WORSE: Final = 0.02
+
+
+class Step(NamedTuple):
+    """A move, and the block that it moves."""
+
+    block: str
+    source: int
+    target: int
+
+
+class _Spot(NamedTuple):
+    """Where a block stands: its stack, and how many of the others there are below it."""
+
+    stack: int
+    level: int
+
+
+def shortened(
+    initial: Stacks, target: Stacks, moves: Sequence[Move], enough: float, work: int, limits: Limits
+) -> list[Move]:
+    """A plan from one state to another that is no longer than the one given.
+
+    Args:
+        enough: a plan of so many moves is short enough.
+        work: how many moves of plans are looked at before it is left as it is.
+    """
+    rng = random.Random(0)
+    reinsertion = Reinsertion(initial, target)
+    current = best = steps_of(initial, moves)
+    while len(best) > enough and work > 0:
+        limits.poll()
+        out = reinsertion.chosen(rng)
+        work -= len(out) * len(current)
+        changed = reinsertion.again(current, out)
+        slack = rng.random() < WORSE
+        if changed is not None and len(changed) <= len(current) + slack:
+            current = changed
+            if len(current) < len(best):
+                best = current
+    return [Move(step.source, step.target) for step in best]
+
+
+class Reinsertion:
+    """Takes blocks out of plans between two states, and puts them back."""
+
+    def __init__(self, initial: Stacks, target: Stacks) -> None:
+        self._initial, self._target = initial, target
+        self._names = [name for stack in initial for name in stack]
+        self._last = {name: index for index, stack in enumerate(target) for name in stack}
+
+    def chosen(self, rng: random.Random) -> list[str]:
+        """Blocks to take out, in the order in which they come back."""
+        number = rng.randint(1, MOST_OUT)
+        if rng.random() < 0.5:
+            return rng.sample(self._names, min(number, len(self._names)))
+        one = rng.choice(self._names)
+        stack = self._target[self._last[one]]
+        level = stack.index(one)
+        near = [name for name in stack[max(0, level - NEAR) : level + NEAR + 1] if name != one]
+        out = [one, *rng.sample(near, min(number - 1, len(near)))]
+        rng.shuffle(out)
+        return out
+
+    def again(self, plan: Sequence[Step], out: Sequence[str]) -> list[Step] | None:
+        """The plan with these blocks taken out and put back; None: one of them fits nowhere."""
+        left = set(out)
+        steps = [step for step in plan if step.block not in left]
+        for name in out:
+            extended = self._with(steps, name, left)
+            if extended is None:
+                return None
+            steps = extended
+            left.discard(name)
+        return steps
+
+    def _with(self, steps: list[Step], name: str, absent: set[str]) -> list[Step] | None:
+        """A block's cheapest way among the steps of others, put between them."""
+        start, end = (self._spot(stacks, name, absent) for stacks in (self._initial, self._target))
+        heights = [sum(other not in absent for other in stack) for stack in self._initial]
+        ways = _cheapest(steps, heights, start, end)
+        if ways is None:
+            return None
+        result: list[Step] = []
+        done = 0
+        for before, source, target in ways:
+            result += steps[done:before]
+            result.append(Step(name, source, target))
+            done = before
+        return result + steps[done:]
+
+    @staticmethod
+    def _spot(stacks: Stacks, name: str, absent: set[str]) -> _Spot:
+        for index, stack in enumerate(stacks):
+            if name in stack:
+                below = stack[: stack.index(name)]
+                return _Spot(index, sum(other not in absent for other in below))
+        raise KeyError(name)
+
+
+def _cheapest(
+    steps: Sequence[Step], heights: list[int], start: _Spot, end: _Spot
+) -> list[tuple[int, int, int]] | None:
+    """The fewest moves of one block among the steps of the others; None where there are none.
+
+    Args:
+        heights: of the stacks at the start, without the block; changed.
+
+    Returns:
+        Before which step each is, from where and to where.
+    """
+    cost = {start: 0}
+    came_from: list[dict[int, int]] = []
+    for index in range(len(steps) + 1):
+        # Where the block is on top it can go to every other stack.
+        on_top = [
+            (cost[spot], stack)
+            for stack, height in enumerate(heights)
+            if (spot := _Spot(stack, height)) in cost
+        ]
+        moved: dict[int, int] = {}
+        if on_top:
+            least, source = min(on_top)
+            for stack, height in enumerate(heights):
+                spot = _Spot(stack, height)
+                if stack != source and cost.get(spot, least + 2) > least + 1:
+                    cost[spot] = least + 1
+                    moved[stack] = source
+        came_from.append(moved)
+        if index < len(steps):
+            step = steps[index]
+            # Who stands on the block that moves is in its way.
+            cost.pop(_Spot(step.source, heights[step.source]), None)
+            heights[step.source] -= 1
+            heights[step.target] += 1
+    if end not in cost:
+        return None
+    ways = []
+    stack, level = end
+    for index in range(len(steps), -1, -1):
+        if level == heights[stack] and stack in came_from[index]:
+            source = came_from[index][stack]
+            ways.append((index, source, stack))
+            stack, level = source, heights[source]
+        if index:
+            heights[steps[index - 1].source] += 1
+            heights[steps[index - 1].target] -= 1
+    return ways[::-1]
+
+
+def steps_of(initial: Stacks, moves: Sequence[Move]) -> list[Step]:
+    """The moves of a plan with the blocks that they move."""
+    stacks = [list(stack) for stack in initial]
+    steps = []
+    for move in moves:
+        stacks[move.target].append(stacks[move.source].pop())
+        steps.append(Step(stacks[move.target][-1], move.source, move.target))
+    return steps
