@@ -15,10 +15,6 @@ _EDGES: Final = (
     ("at", "top"), ("at", "very", "top"), ("on", "very", "top"), ("at", "bottom"),
     ("at", "very", "bottom"), ("on", "very", "bottom"),
 )  # fmt: skip
-_EDGES: Final = (
-    ("at", "top"), ("at", "very", "top"), ("on", "very", "top"), ("at", "bottom"),
-    ("at", "very", "bottom"), ("on", "very", "bottom"),
-)  # fmt: skip
 _JUST: Final = {"just-left-of": "left", "just-right-of": "right"}
 
 
