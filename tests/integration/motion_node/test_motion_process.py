@@ -6,6 +6,7 @@ from __future__ import annotations
 import signal
 from typing import Any
 
+import pytest
 from motion_neighbours import PATIENT, Bench, plan_message
 from ros2_run import Start, finish
 from tamp_interfaces.msg import MotionStatus
@@ -42,6 +43,7 @@ def test_stopped_in_the_middle_of_a_plan_the_arm_goes_home_and_the_next_one_does
     assert bench.arm.at_home
 
 
+@pytest.mark.usefixtures("without_shared_memory")
 def test_fault_3_a_process_that_was_stopped_follows_the_arm_on(
     ros_context: Any, start: Start
 ) -> None:

@@ -147,6 +147,7 @@ def test_fault_1_a_cancel_to_a_dead_planner_ends(start_planner: Any, client: Pla
         client.cancel(timeout=2.0)
 
 
+@pytest.mark.usefixtures("without_shared_memory")
 def test_a_planner_that_stands_still_for_a_while_is_waited_for(
     start_planner: Any, client: PlannerClient, ros_context: Any
 ) -> None:
