@@ -78,7 +78,8 @@ class ClosedLoop:
         )
         self._runs = PlanRun(
             *(settings, motion, self._teller, self._because),
-            *(cancelled, conflict, self._stopped, shut_down, lambda: scenes.newest),
+            *(cancelled, conflict, self._stopped, shut_down),
+            newest=lambda: scenes.newest,
         )
         self._patience, self._contradictions = 1, list[str]()
         self._requested = scenes.now()
