@@ -12,7 +12,7 @@ from posed_scenes import Point, centre, frame
 from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
 
 from planner_node.loop import Outcome, Plan, Status
-from scene_graph import GraphStatus, apply_move
+from scene_graph import GraphStatus, Stacks, apply_move
 
 Happening = Callable[["WatchBench"], None]
 #: Reports a phase; one each 50 ms.
@@ -25,6 +25,8 @@ class WatchBench(LoopBench):
     Attributes:
         moved: blocks that are not where their stack says: in the hand, elsewhere, or gone.
     """
+
+    stacks: Stacks
 
     def __init__(self, *behaviours: Behaviour, **settings: Any) -> None:
         super().__init__(*(behaviours or (phase_by_phase(),)), **settings)
