@@ -15,11 +15,13 @@ from typing import Final
 
 from scene_graph import GraphStatus, Place, SceneObject
 
-from .expectation import PLACED_TOLERANCE, RESTING_TOLERANCE, Expectation, Point, Rest
+from .expectation import RESTING_TOLERANCE, Expectation, Point, Rest
 from .scene import Sighting
 
 #: Of a block whose outline is hidden further, nothing is believed.
 MIN_VISIBLE: Final = 0.3
+#: What is seen this near to the middle of a place, or of a block, from above, is over it [m].
+OVER: Final = 0.036
 #: A place that is hidden further may hide a block.
 MAX_HIDDEN: Final = 0.02
 
@@ -88,6 +90,7 @@ class Evidence:
         self.expectation = expectation
         self._patience = patience
         self._suspicions: dict[str, Suspicion] = {}
+        self._fresh: set[str] = set()  # of the newest frame
 
     def weigh(self, sighting: Sighting, steps: range) -> Suspicion | None:
         """Takes a frame; returns what is certain by now, None if nothing is.
@@ -98,6 +101,7 @@ class Evidence:
         graph = sighting.graph
         if not graph.objects:
             return None
+        self._fresh.clear()
         seen = {item.name: item for item in graph.objects}
         states = [self.expectation.at(step) for step in steps]
         # It may be in the hand before that is heard of.
@@ -143,6 +147,7 @@ class Evidence:
         self._suspect(Finding(name, Kind.ELSEWHERE, options[-1], item.position_world), steps)
 
     def _suspect(self, finding: Finding, steps: range) -> None:
+        self._fresh.add(finding.name)
         before = self._suspicions.get(finding.name)
         if before is None or not finding.agrees_with(before.finding):
             self._suspicions[finding.name] = Suspicion(finding, 1, steps[-1])
@@ -152,8 +157,9 @@ class Evidence:
     def _certain(self, status: GraphStatus, about_to_rise: str) -> Suspicion | None:
         certain = [
             item
-            for item in self._suspicions.values()
-            if item.frames >= self._needed(item.finding, status, about_to_rise)
+            for name, item in self._suspicions.items()
+            if name in self._fresh
+            and item.frames >= self._needed(item.finding, status, about_to_rise)
         ]
         # Where one is elsewhere, others may be missing or foreign only because of it.
         return min(certain, key=lambda item: list(Kind).index(item.finding.kind), default=None)
@@ -171,9 +177,9 @@ def _is_seen(stack: int, places: Iterable[Place]) -> bool:
 def _is_lifted(item: SceneObject, rest: Rest) -> bool:
     """Whether a block is right above where it rested."""
     dx, dy, dz = (a - b for a, b in zip(item.position_world, rest.position_world))
-    return math.hypot(dx, dy) <= PLACED_TOLERANCE and dz > 0.0
+    return math.hypot(dx, dy) <= OVER and dz > 0.0
 
 
 def _over_a_place(item: SceneObject, places: Iterable[Place]) -> bool:
     here = item.position_world[:2]
-    return any(math.dist(here, place.position_world[:2]) <= PLACED_TOLERANCE for place in places)
+    return any(math.dist(here, place.position_world[:2]) <= OVER for place in places)

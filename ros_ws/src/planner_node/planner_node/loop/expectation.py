@@ -10,9 +10,9 @@ from scene_graph import SceneObject, base_name
 
 from .plan import Plan
 
-#: A block that has not been seen since it was put down may be this far beside its place: where
-#: perception still calls it standing there [m].
-PLACED_TOLERANCE: Final = 0.036
+#: A block that has not been seen since it was put down may be this far beside what it stands on:
+#: the motion node puts it nearer to the middle of its place where it may overhang [m].
+PLACED_TOLERANCE: Final = 0.025
 #: One that was seen stands where it was seen, to this; an open hand takes it all the same [m].
 RESTING_TOLERANCE: Final = 0.015
 #: Of a height, which follows from the blocks beneath [m].
