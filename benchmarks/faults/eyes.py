@@ -61,7 +61,7 @@ class Eyes:
         node.create_subscription(JointState, "joint_states", self._on_joints, SENSOR_DATA, raw=True)
         node.create_subscription(SceneGraphMsg, "scene_graph", self._on_graph, NEWEST, raw=True)
         node.create_subscription(SymbolicPlan, "symbolic_plan", self._on_plan, LATCHED)
-        self._stops: list[int] = []
+        self._stops: dict[str, int] = {}
         self._setters: dict[str, Client] = {}
         self._reset = node.create_client(ResetScene, "sim/reset")
         self._thread = NodeThread(node)
@@ -148,7 +148,7 @@ class Eyes:
     def stops(self) -> list[int]:
         """When plans were to be stopped since :meth:`forget_motion`, in simulated time [ns]."""
         with self._news:
-            return list(self._stops)
+            return sorted(self._stops.values())
 
     def truth_stamp(self) -> int:
         """When the newest ground truth was true, in simulated time [ns]; 0 if there is none."""
@@ -252,7 +252,8 @@ class Eyes:
     def _on_plan(self, message: SymbolicPlan) -> None:
         if not message.moves and not message.plan_id.startswith("home-"):
             with self._news:
-                self._stops.append(nanoseconds(message.header.stamp))
+                # A stop is published again and again until it is obeyed.
+                self._stops.setdefault(message.plan_id, nanoseconds(message.header.stamp))
 
     def _on_graph(self, _message: bytes) -> None:
         self._graphs += 1

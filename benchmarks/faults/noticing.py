@@ -17,6 +17,20 @@ def grasps(reports: Iterable[MotionReport]) -> list[int]:
     return sorted(taken.values())
 
 
+def carried_between(reports: Iterable[MotionReport], begin: int, end: int) -> frozenset[str]:
+    """The blocks that were in the hand at some moment between two [ns]."""
+    carried, held = set(), ""
+    for report in reports:
+        if report.stamp > end:
+            break
+        if report.stamp >= begin:
+            carried.add(held)
+        held = report.held or (report.object_name if report.phase == "place" else "")
+        if report.stamp >= begin:
+            carried.add(held)
+    return frozenset({*carried, held} - {""})
+
+
 def noticed_at(reports: Sequence[MotionReport], stops: Iterable[int], after: int) -> int | None:
     """When something was first found to be wrong after a moment [ns]; None: it was not.
 

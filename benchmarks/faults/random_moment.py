@@ -18,7 +18,7 @@ from faults.catalogue import faults_named
 from faults.disturbances import Disturbed
 from faults.fault import Ending, Fault
 from faults.judge import ending_of, holds
-from faults.noticing import grasps_lost, noticed_at, noticed_in_time
+from faults.noticing import carried_between, grasps_lost, noticed_at, noticed_in_time
 from faults.setting import Setting
 from scene_graph import SceneGraph, Stacks
 from sim_node.cli.client import DisturbClient
@@ -200,7 +200,9 @@ def _disturb(setting: Setting, kind: str, attempt: int) -> Disturbance | None:
         return happened
     eyes.wait_for(lambda: eyes.truth_stamp() > stamp + _REST, 30.0)
     after = eyes.truth_at_or_before(stamp + _REST)
-    return replace(happened, effect=_differs(before, after, tuple(request.blocks)))
+    carried = carried_between(eyes.reports(), stamp - _REST // 2, stamp + _REST)
+    told = tuple(name for name in request.blocks if name not in carried)
+    return replace(happened, effect=_differs(before, after, told))
 
 
 def _standing(truth: SceneGraph, held: str, initial: Stacks) -> Stacks:
@@ -213,7 +215,7 @@ def _standing(truth: SceneGraph, held: str, initial: Stacks) -> Stacks:
 
 
 def _differs(before: SceneGraph, after: SceneGraph | None, blocks: tuple[str, ...]) -> bool:
-    """Whether the blocks that it was about are elsewhere, gone or new."""
+    """Whether these blocks are elsewhere, gone or new."""
     if after is None:
         return True
     for name in blocks:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from faults.moment_report import details, make_rows
-from faults.noticing import grasps, grasps_lost, noticed_at, noticed_in_time
+from faults.noticing import carried_between, grasps, grasps_lost, noticed_at, noticed_in_time
 from faults.random_moment import MomentResult, to_json
 from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
 
@@ -59,6 +59,14 @@ def test_the_grasp_from_which_a_block_slips_is_not_the_next_one() -> None:
     course = [*COURSE[:5], said(42, "home", 1, state=FAILED)]
     assert noticed_in_time(course, [], 32) is False
     assert noticed_in_time(course, [], 32, passed=1) is True
+
+
+def test_what_is_carried_is_known_from_before_and_from_what_comes() -> None:
+    course = [said(20, "place", 0, object_name="red_box"), said(30, "pick", 1),
+              said(40, "place", 1, object_name="blue_box")]  # fmt: skip
+    assert carried_between(course, 22, 28) == {"red_box"}
+    assert carried_between(course, 32, 38) == frozenset()
+    assert carried_between(course, 28, 45) == {"red_box", "blue_box"}
 
 
 def test_lost_grasps_are_counted_by_plan() -> None:
