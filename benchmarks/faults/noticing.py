@@ -71,7 +71,7 @@ def noticed_in_time(
 
     Args:
         passed: of the grasps after the moment, so many belong to what happened: a block slips
-            out of the hand that has just taken it.
+            out of the hand that has just taken it, or fingers that are jammed do not take it.
     """
     later = [stamp for stamp in grasps(reports) if stamp > after][passed:]
     noticed = noticed_at(reports, stops, after)

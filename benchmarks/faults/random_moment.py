@@ -256,12 +256,13 @@ def _judged(
     )
     if disturbance is None:
         return result
-    passed = 1 if result.kind == "slip" else 0
+    passed = 1 if result.kind in ("slip", "jam") else 0  # they spoil a grasp themselves
     at = noticed_at(reports, stops, disturbance.stamp)
     refused = result.ending in (Ending.REFUSED.value, Ending.WRONG_SENTENCE.value)
     sentence = answer.sentence if answer else ""
     named = not refused or not disturbance.blocks or any(
-        name in sentence for name in disturbance.blocks
+        name in sentence or f"the {name.split('_')[0]} block" in sentence
+        for name in disturbance.blocks
     )  # fmt: skip
     return replace(
         result,

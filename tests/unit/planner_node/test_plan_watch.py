@@ -93,7 +93,8 @@ def test_any_block_that_is_displaced_in_the_view_is_noticed(
     assume(all(item.held != name for item in around))
     assume(len(later) >= 4)
     there = data.draw(SOMEWHERE)
-    assume(math.dist(there, standing(course[begin], name)) > 0.06)
+    # Straight above where it stood it may be in the hand already.
+    assume(math.dist(there[:2], standing(course[begin], name)[:2]) > 0.04)
     watch = PlanWatch(plan)
     for item in course[:begin]:
         if item.begins:
@@ -162,11 +163,7 @@ def test_a_block_that_is_gone_is_missed_only_where_nothing_hides_its_place() -> 
     _, watch, course = course_of(2)
     for item in course[:6]:
         assert not watch.see(item.frame({"green_box": None}, hidden=(0.0, 0.1, 0.0)))
-    assert [watch.see(item.frame({"green_box": None})) for item in course[6:9]] == [
-        False,
-        False,
-        True,
-    ]
+    assert [watch.see(item.frame({"green_box": None})) for item in course[6:8]] == [False, True]
     assert watch.contradiction == (
         "green_box was expected on stack1 and is not seen any more since move 2 of 3"
     )
@@ -189,11 +186,11 @@ def test_another_block_on_a_place_is_noticed_and_a_part_of_the_arm_is_not() -> N
     _, watch, course = course_of(1)
     for item in course[:8]:
         assert not watch.see(item.frame({"grey_box": (0.437, 0.08, 0.3)}))
-    for item in course[8:]:
+    for item in course[8:10]:
         watch.see(item.frame({"grey_box": centre(2, 0)}))
-    assert not watch.contradiction  # three frames: it may still be the arm
+    assert not watch.contradiction  # two frames: it may still be the arm
     _, watch, course = course_of(1)
-    for item in course[:5]:
+    for item in course[:3]:
         watch.see(item.frame({"grey_box": centre(1, 1)}))
     assert watch.contradiction == (
         "grey_box is seen at (0.50, 0.00, 0.07) m since move 1 of 3, and was not there before"

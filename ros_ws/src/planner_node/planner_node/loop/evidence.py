@@ -36,7 +36,7 @@ class Kind(Enum):
 
 #: So many frames have to agree; one is enough that perception calls CONFIDENT. A part of the arm
 #: can look like a block, though not for long at one point.
-FRAMES: Final = {Kind.ELSEWHERE: 2, Kind.UNSEEN: 3, Kind.FOREIGN: 5}
+FRAMES: Final = {Kind.ELSEWHERE: 2, Kind.UNSEEN: 2, Kind.FOREIGN: 3}
 
 
 @dataclass(frozen=True)
@@ -167,7 +167,9 @@ class Evidence:
     def _needed(self, finding: Finding, status: GraphStatus, about_to_rise: str) -> int:
         if status is GraphStatus.CONFIDENT:
             return self._patience
-        return self._patience * (FRAMES[finding.kind] + (finding.name == about_to_rise))
+        # A block that is seen may be in the hand already, and that report still be on its way.
+        may_be_held = finding.kind is Kind.ELSEWHERE and finding.name == about_to_rise
+        return self._patience * (FRAMES[finding.kind] + may_be_held)
 
 
 def _is_seen(stack: int, places: Iterable[Place]) -> bool:
