@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-perception eval-visual eval-tasks eval-faults eval-replay bench-motion bench-planner bench-sim results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-planner bench-sim results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -51,6 +51,11 @@ eval-tasks: setup  ## success from pixels to tower; FAMILY=six|seven|varied|… 
 eval-faults: setup  ## faults of every kind in every phase, and what becomes of the task; ONLY= PHASE= SEED= TRIALS= JOBS= RTF= RESUME=1 QUICK=1
 	@$(RUN) python benchmarks/eval_faults.py $(if $(ONLY),--only "$(ONLY)") $(if $(PHASE),--phase $(PHASE)) \
 	  $(if $(SEED),--seed $(SEED)) $(if $(TRIALS),--trials $(TRIALS)) $(if $(RTF),--real-time-factor $(RTF)) \
+	  $(if $(JOBS),--jobs $(JOBS)) $(if $(RESUME),--resume) $(ARGS)
+
+eval-disturbances: setup  ## tasks disturbed at random moments, and undisturbed ones; VERIFY=end|each_move|watch N= QUIET= KIND= SEED= JOBS= RTF= RESUME=1 QUICK=1
+	@$(RUN) python benchmarks/eval_disturbances.py $(if $(KIND),--kind "$(KIND)") $(if $(VERIFY),--verify "$(VERIFY)") \
+	  $(if $(N),--n $(N)) $(if $(QUIET),--quiet $(QUIET)) $(if $(SEED),--seed $(SEED)) $(if $(RTF),--real-time-factor $(RTF)) \
 	  $(if $(JOBS),--jobs $(JOBS)) $(if $(RESUME),--resume) $(ARGS)
 
 eval-replay: setup  ## executed tasks once more in MuJoCo; N= BLOCKS= SOURCE=graph|process RTF= SEED= RESUME=1 QUICK=1

@@ -11,14 +11,19 @@ from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
+from rcl_interfaces.srv import SetParameters
+from rclpy.client import Client
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
-from tamp_interfaces.msg import MotionStatus
+from tamp_interfaces.msg import MotionStatus, SymbolicPlan
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_interfaces.srv import ResetScene
+from tamp_runtime.messages.motion_status import report_from_message
 from tamp_runtime.messages.scene_graph import graph_from_message
 from tamp_runtime.messages.stamps import nanoseconds
+from tamp_runtime.motion_report import MotionReport
 from tamp_runtime.node_thread import NodeThread
 from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA
 from tamp_runtime.service_call import ask
@@ -55,6 +60,9 @@ class Eyes:
         node.create_subscription(MotionStatus, "motion_status", self._on_status, RELIABLE)
         node.create_subscription(JointState, "joint_states", self._on_joints, SENSOR_DATA, raw=True)
         node.create_subscription(SceneGraphMsg, "scene_graph", self._on_graph, NEWEST, raw=True)
+        node.create_subscription(SymbolicPlan, "symbolic_plan", self._on_plan, LATCHED)
+        self._stops: dict[str, int] = {}
+        self._setters: dict[str, Client] = {}
         self._reset = node.create_client(ResetScene, "sim/reset")
         self._thread = NodeThread(node)
 
@@ -117,6 +125,7 @@ class Eyes:
         """What the motion node said up to now is of the past."""
         with self._news:
             self._statuses.clear()
+            self._stops.clear()
 
     def phase_reached(self, phase: Phase, kind: str) -> bool:
         """Whether the motion has come to a phase; ``kind``: pick or place, for EXECUTE."""
@@ -130,6 +139,54 @@ class Eyes:
                 )
             wanted = kind if phase is Phase.EXECUTE else "home"
             return any(said.phase == wanted for said in executing)
+
+    def reports(self) -> list[MotionReport]:
+        """What the motion node said since :meth:`forget_motion`."""
+        with self._news:
+            return [report_from_message(said) for said in self._statuses]
+
+    def stops(self) -> list[int]:
+        """When plans were to be stopped since :meth:`forget_motion`, in simulated time [ns]."""
+        with self._news:
+            return sorted(self._stops.values())
+
+    def truth_stamp(self) -> int:
+        """When the newest ground truth was true, in simulated time [ns]; 0 if there is none."""
+        with self._news:
+            return nanoseconds(self._truths[-1].header.stamp) if self._truths else 0
+
+    def fresh_truth_stamp(self) -> int:
+        """The simulated time of now [ns]; raises SimulationError if none arrives."""
+        self.fresh_truth()
+        return self.truth_stamp()
+
+    def truth_at_or_before(self, stamp: int) -> SceneGraph | None:
+        """The newest ground truth of up to a time [ns], if it is still known."""
+        with self._news:
+            for message in reversed(self._truths):
+                if nanoseconds(message.header.stamp) <= stamp:
+                    return graph_from_message(message)
+        return None
+
+    def set_parameter(self, node: str, name: str, value: str, timeout: float = 30.0) -> None:
+        """Sets a parameter that is a text; raises SimulationError if the node does not take it."""
+        service = f"{node}/set_parameters"
+        if service not in self._setters:
+            self._setters[service] = self._node.create_client(SetParameters, service)
+        client = self._setters[service]
+        parameter = Parameter(name, value=value).to_parameter_msg()
+        request = SetParameters.Request(parameters=[parameter])
+        try:
+            answer = ask(
+                lambda: client.call_async(request),
+                client.service_is_ready,
+                client.wait_for_service,
+                timeout,
+            )
+        except TimeoutError as error:
+            raise SimulationError(f"{service}: {error}") from None
+        if not answer.results[0].successful:
+            raise SimulationError(f"{node} does not take {name}: {answer.results[0].reason}")
 
     def motion(self) -> MotionStatus | None:
         """The last word of the motion node since :meth:`forget_motion`."""
@@ -191,6 +248,12 @@ class Eyes:
         with self._news:
             self._statuses.append(message)
             self._news.notify_all()
+
+    def _on_plan(self, message: SymbolicPlan) -> None:
+        if not message.moves and not message.plan_id.startswith("home-"):
+            with self._news:
+                # A stop is published again and again until it is obeyed.
+                self._stops.setdefault(message.plan_id, nanoseconds(message.header.stamp))
 
     def _on_graph(self, _message: bytes) -> None:
         self._graphs += 1

@@ -98,7 +98,7 @@ class LoopBench:
     """
 
     def __init__(self, *behaviours: Behaviour, **settings: Any) -> None:
-        self.stacks = START
+        self.stacks: Stacks = START
         self.fault: dict[str, Any] = {}
         self.silent = False
         self.mute = False

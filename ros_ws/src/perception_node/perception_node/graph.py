@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from scene_graph import (
     BlockPose,
+    Place,
     Relation,
     SceneGraph,
     SceneObject,
@@ -56,8 +57,16 @@ def build_graph(
     return SceneGraph(
         objects=tuple(sorted(objects, key=lambda item: item.name)),
         relations=_relations(names.names, standing),
-        places=standing.places,
+        places=_with_hidden_shares(standing, occlusion),
         confidence=float(confidence.min()) * (1.0 - occlusion.greatest),
+    )
+
+
+def _with_hidden_shares(standing: Standing, occlusion: Occlusion) -> tuple[Place, ...]:
+    if len(occlusion.shares) != len(standing.places):
+        return standing.places
+    return tuple(
+        replace(place, hidden=share) for place, share in zip(standing.places, occlusion.shares)
     )
 
 

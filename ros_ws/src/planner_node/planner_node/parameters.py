@@ -8,7 +8,7 @@ from typing import Final
 from tamp_runtime.parameters import ParameterSpec
 
 from .search import ALGORITHMS, algorithm_named
-from .settings import Settings
+from .settings import EACH_MOVE, END, VERIFY, WATCH, Settings
 
 _DEFAULTS: Final = Settings()
 
@@ -20,6 +20,11 @@ def _algorithm_problem(name: str) -> str:
     except ValueError as error:
         return f"search_algorithm: {error}"
     return ""
+
+
+def _verify_problem(name: str) -> str:
+    """end, each_move or watch"""
+    return "" if name in VERIFY else f"verify = {name!r}; there are {', '.join(VERIFY)}"
 
 
 PARAMETERS: Final = (
@@ -89,5 +94,13 @@ PARAMETERS: Final = (
         "achieve_goal plans this often anew before it gives up.",
         0,
         1000,
+    ),
+    ParameterSpec(
+        "verify",
+        _DEFAULTS.verify,
+        "When achieve_goal compares what is seen with what its plan predicts: "
+        f"{END}: after the last move; {EACH_MOVE}: after each, for which the arm goes home; "
+        f"{WATCH}: all the time, and the arm is stopped where they differ.",
+        check=_verify_problem,
     ),
 )

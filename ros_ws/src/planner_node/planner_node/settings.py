@@ -5,9 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from .search import AUTO, DEFAULT_MAX_EXPANSIONS
+
+#: When a plan that is carried out is compared with what the camera sees: after its last move, after
+#: each, or all the time.
+END: Final = "end"
+EACH_MOVE: Final = "each_move"
+WATCH: Final = "watch"
+VERIFY: Final = (END, EACH_MOVE, WATCH)
 
 
 @dataclass
@@ -26,6 +33,7 @@ class Settings:
     motion_accept_timeout: float = 30.0
     motion_silence_timeout: float = 15.0
     max_replans: int = 5
+    verify: str = END
 
     def update(self, values: Mapping[str, Any]) -> None:
         """Takes over the values of some parameters by name."""

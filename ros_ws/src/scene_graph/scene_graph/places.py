@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 Point = tuple[float, float, float]
@@ -17,10 +17,18 @@ _BASE: Final = re.compile(r"stack(0|[1-9]\d*)")
 
 @dataclass(frozen=True)
 class Place:
-    """A place: index from the left from 0, and its centre on the table's surface [m]."""
+    """A place.
+
+    Attributes:
+        index: from the left from 0.
+        position_world: its centre on the table's surface [m].
+        hidden: how much of the column over it something hid that is not a block, in the picture
+            that its graph was made of, in 0..1; of no matter to whether it is the same place.
+    """
 
     index: int
     position_world: Point
+    hidden: float = field(default=0.0, compare=False)
 
 
 def base_name(index: int) -> str:

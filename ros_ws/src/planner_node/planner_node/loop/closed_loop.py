@@ -24,13 +24,14 @@ from ..errors import (
 )
 from ..goals.goal import Goal
 from ..search import SearchResult, make_plan
-from ..settings import Settings
+from ..settings import EACH_MOVE, WATCH, Settings
 from .account import account_for, describe_difference, in_the_view
 from .arm_home import ArmHome
 from .clock import Clock
 from .motion_link import MotionLink
 from .plan import Plan, plan_for
 from .plan_run import PlanRun
+from .plan_watch import PlanWatch
 from .report import Outcome, Progress, Stage, Status
 from .scene import Scene
 from .scene_watch import SceneWatch
@@ -78,7 +79,9 @@ class ClosedLoop:
         self._runs = PlanRun(
             *(settings, motion, self._teller, self._because),
             *(cancelled, conflict, self._stopped, shut_down),
+            newest=lambda: scenes.newest,
         )
+        self._patience, self._contradictions = 1, list[str]()
         self._requested = scenes.now()
         self.outcome = Outcome()
 
@@ -128,11 +131,21 @@ class ClosedLoop:
             if not plans:
                 self._note(moves_planned=len(found.moves))
             plans += 1
-            scene = self._carry_out(plan_for(scene, goal, found, self._scenes.now()), goal)
+            scene = self._work_off(scene, goal, found)
         seen = format_stacks(scene.stacks)
         if not plans:
             return Status.ALREADY_TRUE, f"nothing to do: '{goal}' holds in {seen}"
-        return Status.SUCCESS, f"the camera confirms '{goal}': {seen}"
+        told = "".join(f"; {sentence}" for sentence in self._contradictions)
+        return Status.SUCCESS, f"the camera confirms '{goal}': {seen}{told}"
+
+    def _work_off(self, scene: Scene, goal: Goal, found: SearchResult) -> Scene:
+        """Has what was found carried out, all at once or with a look after each move."""
+        each = self._settings.verify == EACH_MOVE
+        for part in found.move_by_move() if each else (found,):
+            scene = self._carry_out(plan_for(scene, goal, part, self._scenes.now()), goal)
+            if scene.stacks != part.states[-1] or goal.holds(scene.stacks):
+                break
+        return scene
 
     def _carry_out(self, plan: Plan, goal: Goal) -> Scene:
         """Has a plan carried out, and looks what has become of it.
@@ -142,9 +155,10 @@ class ClosedLoop:
         """
         self._check()
         before = len(self.outcome.causes)
+        watch = self._watch_over(plan)
         started = self._clock.now()
         try:
-            end = self._runs.carry_out(plan)
+            end = self._runs.carry_out(plan, watch)
         finally:
             self._add_up(self._teller.progress.motion, self._clock.now() - started)
         failure = self._runs.judge(end)
@@ -157,6 +171,10 @@ class ClosedLoop:
                 raise
             self._because(str(error))
             raise failure from error
+        if end.contradicted and watch is not None:
+            self._contradictions.append(watch.contradiction)
+            if watch.is_as_predicted(scene, end.report.moves_done):
+                self._patience *= 2
         if difference := describe_difference(plan, end.report, scene):
             self._because(difference)
         silence = end.silence
@@ -165,6 +183,10 @@ class ClosedLoop:
         if failure is not None and not goal.holds(scene.stacks):
             raise failure
         return scene
+
+    def _watch_over(self, plan: Plan) -> PlanWatch | None:
+        """What compares frames with a plan while it is carried out, where that is wanted."""
+        return PlanWatch(plan, self._patience) if self._settings.verify == WATCH else None
 
     def _look(
         self,

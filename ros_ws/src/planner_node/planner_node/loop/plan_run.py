@@ -23,16 +23,25 @@ from .account import describe_arm, describe_step
 from .arm_home import PASSING
 from .motion_link import MotionLink
 from .plan import Plan
+from .plan_watch import PlanWatch
 from .report import Stage
+from .scene import Sighting
 from .teller import Teller
 
 
 @dataclass(frozen=True)
 class PlanEnd:
-    """What the motion node said last of a plan, and the error if it fell silent about it."""
+    """How a plan ended.
+
+    Attributes:
+        report: what the motion node said last of it.
+        silence: the error if it fell silent about it.
+        contradicted: it was stopped since something else was seen than it predicts.
+    """
 
     report: MotionReport
     silence: MotionSilentError | None = None
+    contradicted: bool = False
 
 
 class PlanRun:
@@ -42,6 +51,7 @@ class PlanRun:
         because: told why a plan failed.
         cancelled, conflict: why the run is to end; ``stopped``: whether it is, polled.
         shut_down: the node ends, so that nobody can wait for the arm.
+        newest: what perception reported last.
     """
 
     def __init__(
@@ -54,6 +64,7 @@ class PlanRun:
         conflict: Callable[[], str],
         stopped: Callable[[], bool],
         shut_down: Callable[[], bool],
+        newest: Callable[[], Sighting | None],
     ) -> None:
         self._settings = settings
         self._motion = motion
@@ -63,10 +74,15 @@ class PlanRun:
         self._conflict = conflict
         self._stopped = stopped
         self._shut_down = shut_down
+        self._newest = newest
         self._infeasible = False
+        self._watch: PlanWatch | None = None
 
-    def carry_out(self, plan: Plan) -> PlanEnd:
+    def carry_out(self, plan: Plan, watch: PlanWatch | None = None) -> PlanEnd:
         """Hands a plan to the motion node and follows it to its end.
+
+        Args:
+            watch: stops it where what is seen contradicts it.
 
         Raises:
             CancelledError, ConflictError: it was stopped, and the arm rests.
@@ -76,11 +92,12 @@ class PlanRun:
         moves = ", ".join(
             f"{block} to stack{move.target}" for block, move in zip(plan.blocks, plan.moves)
         )
+        self._watch = watch
         self._teller.begin(plan)
         self._teller.tell(Stage.OPTIMISING, f"{len(plan.moves)} moves: {moves}")
         self._motion.start(plan)
         try:
-            end = self._motion.follow(self._on_report, self._stopped)
+            end = self._motion.follow(self._on_report, self._stopped_or_contradicted)
         except MotionSilentError as error:
             self._motion.stop(plan.plan_id)
             return self._outlast(error)
@@ -88,6 +105,8 @@ class PlanRun:
             # Whatever went wrong here, the motion shall not go on with a plan that is given up.
             self._motion.stop(plan.plan_id)
             raise
+        if end is None and watch is not None and watch.contradiction and not self._stopped():
+            return self._stop_short(plan, watch.contradiction)
         if end is None:
             self._stop(plan)
         return PlanEnd(end)
@@ -101,6 +120,8 @@ class PlanRun:
         infeasible_before, self._infeasible = self._infeasible, False
         report = end.report
         if end.silence is not None or report.state == MotionState.SUCCEEDED:
+            return None
+        if end.contradicted and report.state == MotionState.CANCELLED:
             return None
         if report.state == MotionState.CANCELLED:
             raise CancelledError(f"somebody else stopped the motion: {report.message}")
@@ -119,6 +140,23 @@ class PlanRun:
                 return None
             raise MotionBusyError(sentence, report.plan_id)
         return MotionFailedError(sentence)
+
+    def _stopped_or_contradicted(self) -> bool:
+        watch = self._watch
+        return self._stopped() or (watch is not None and watch.see(self._newest()))
+
+    def _stop_short(self, plan: Plan, contradiction: str) -> PlanEnd:
+        """Stops a plan that what is seen contradicts, and waits until the arm is home."""
+        self._because(contradiction)
+        self._teller.say(f"stopping: {contradiction}")
+        self._motion.stop(plan.plan_id)
+        try:
+            end = self._motion.follow(self._on_report, self._stopped)
+        except MotionSilentError as error:
+            return self._outlast(error)
+        if end is None:
+            self._stop(plan)
+        return PlanEnd(end, contradicted=True)
 
     def _outlast(self, error: MotionSilentError) -> PlanEnd:
         """Waits until a motion node that fell silent reports again; raises if it does not."""
@@ -168,6 +206,8 @@ class PlanRun:
         raise CancelledError(f"cancelled; {moved}")
 
     def _on_report(self, report: MotionReport) -> None:
+        if self._watch is not None:
+            self._watch.hear(report)
         stage, message = self._teller.progress.stage, self._teller.progress.message
         if stage != Stage.CANCELLING:
             optimising = report.state == MotionState.OPTIMISING

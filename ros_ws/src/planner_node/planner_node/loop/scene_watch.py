@@ -41,6 +41,12 @@ class SceneWatch:
             self._newest, self._heard = sighting, self._clock.now()
             self._arrived.notify_all()
 
+    @property
+    def newest(self) -> Sighting | None:
+        """What perception reported last, whatever it is worth; None before it did."""
+        with self._arrived:
+            return self._newest
+
     def latest(self, after: int = 0, needed: frozenset[str] = frozenset()) -> Scene:
         """The newest scene, if it can be planned on.
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from scene_graph import Move, Stacks, apply_move
@@ -36,6 +36,13 @@ class SearchResult:
     expanded: int
     seconds: float
     bound: float = 1.0
+
+    def move_by_move(self) -> tuple[SearchResult, ...]:
+        """The same in as many parts as there are moves."""
+        return tuple(
+            replace(self, moves=(move,), states=states)
+            for move, states in zip(self.moves, pairwise(self.states))
+        )
 
 
 def make_plan(

@@ -75,6 +75,7 @@ def graph_to_message(graph: SceneGraph, header: Header) -> SceneGraphMsg:
             BaseMsg(
                 index=place.index,
                 position=Point(**dict(zip("xyz", map(float, place.position_world)))),
+                hidden=float(place.hidden),
             )
             for place in graph.places
         ],
@@ -88,7 +89,7 @@ def graph_from_message(message: SceneGraphMsg) -> SceneGraph:
         objects=tuple(object_from_message(item) for item in message.objects),
         relations=relations_from_messages(message.relations),
         places=tuple(
-            Place(item.index, (item.position.x, item.position.y, item.position.z))
+            Place(item.index, (item.position.x, item.position.y, item.position.z), item.hidden)
             for item in message.bases
         ),
         confidence=message.confidence,

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``make eval-disturbances``: tasks of five blocks, disturbed at a random moment or by nobody.
+
+Of each kind of the fault campaign's world N tasks, with the planner's ``verify`` as VERIFY=watch
+says (or end,watch), and QUIET tasks that nobody disturbs, each with verify end and watch in turns.
+Judged by ground truth, by what a refusal names, and by whether the arm took another block before
+it was noticed. Stops cleanly on Ctrl-C; RESUME=1 goes on; JOBS=2 runs graphs side by side. KIND=
+and SEED= run single tasks again, which writes nothing into benchmarks/results.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import signal
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import rclpy
+import side_by_side
+from faults.fault import Ending
+from faults.moment_report import command_of, details, is_good, make_rows
+from faults.random_moment import KINDS, NOTHING, MomentResult, run_at_random_moment, to_json
+from faults.setting import Graph, Setting
+from rclpy.signals import SignalHandlerOptions
+from results_file import print_rows, quick, write_result
+from tamp_runtime.node_process import prepare_process
+from tqdm import tqdm
+
+from planner_node.settings import END, VERIFY, WATCH
+from tamp_bringup.processes import NodeDiedError, use_own_domain
+from tamp_bringup.scene_observer import SimulationError
+
+FIRST_SEED: Final = 1000
+FOLDER: Final = Path("runs") / "eval_disturbances"
+AGAIN: Final = FOLDER / "again"
+QUICK: Final = ("swap",)
+
+
+@dataclass(frozen=True)
+class Task:
+    """One task that is to be run."""
+
+    kind: str
+    verify: str
+    trial: int
+    seed: int
+    folder: Path = FOLDER
+
+    @property
+    def path(self) -> Path:
+        """Where its result is kept."""
+        return self.folder / f"{self.kind}_{self.verify}_{self.seed}.json"
+
+
+def plan_tasks(
+    kinds: Sequence[str], verify: Sequence[str], n: int, quiet: int, seed: int | None
+) -> list[Task]:
+    """The tasks; those that are compared come in turns."""
+    if seed is not None:
+        return [Task(kind, way, 0, seed, AGAIN) for kind in kinds for way in verify]
+    tasks = []
+    for trial in range(max(n, quiet)):
+        for kind in kinds:
+            if kind != NOTHING and trial < n:
+                first = FIRST_SEED + 1000 * (1 + list(KINDS).index(kind))
+                tasks += [Task(kind, way, trial, first + trial) for way in verify]
+        if NOTHING in kinds and trial < quiet:
+            tasks += [Task(NOTHING, way, trial, FIRST_SEED + trial) for way in (END, WATCH)]
+    return tasks
+
+
+def run_tasks(tasks: Sequence[Task], real_time_factor: float, share: int = 0) -> None:
+    """Runs those whose results are not there yet; each result goes into its file."""
+    left = [task for task in tasks if not task.path.exists()]
+    folder, done = FOLDER / f"graph{share}", len(tasks) - len(left)
+    with tqdm(total=len(tasks), initial=done, unit="task", position=share) as progress:
+        while left:
+            with Graph(folder, (), real_time_factor) as setting:
+                whole = True
+                while left and whole:
+                    task, *left = left
+                    progress.set_postfix_str(f"{task.kind}, {task.verify}")
+                    result, whole = _try(setting, task)
+                    if not is_good(result):
+                        tqdm.write(f"{result['ending']}: {result['message']}")
+                        tqdm.write(f"    {command_of(result)}")
+                    task.path.write_text(json.dumps(result, indent=1, ensure_ascii=False))
+                    progress.update()
+
+
+def _try(setting: Setting, task: Task) -> tuple[dict[str, Any], bool]:
+    """What became of a task, and whether the graph can go on."""
+    names = task.kind, task.verify, task.trial, task.seed
+    try:
+        return to_json(run_at_random_moment(setting, *names)), True
+    except (NodeDiedError, SimulationError) as error:
+        died = Ending.NODE_DIED.value
+        return to_json(
+            MomentResult(*names, "", happened=True, ending=died, message=str(error))
+        ), False
+
+
+def run_share(tasks: Sequence[Task], real_time_factor: float, share: int = 0) -> bool:
+    """:func:`run_tasks` with a ROS context of its own; whether it came to its end."""
+    use_own_domain()
+    prepare_process()
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        run_tasks(tasks, real_time_factor, share)
+    except KeyboardInterrupt:
+        return False
+    finally:
+        rclpy.try_shutdown()
+    return True
+
+
+def parse_arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--kind", default="", help=f"of {', '.join((*KINDS, NOTHING))}: a,b")
+    parser.add_argument("--verify", default=WATCH, help=f"of {', '.join(VERIFY)}: a,b")
+    parser.add_argument("--n", type=int, default=30, help="disturbed tasks of each kind")
+    parser.add_argument("--quiet", type=int, default=100, help="tasks that nobody disturbs")
+    parser.add_argument("--seed", type=int, help="one task a kind with this seed")
+    parser.add_argument("--real-time-factor", type=float, default=1.0)
+    side_by_side.add_arguments(parser)
+    parser.add_argument("--resume", action="store_true", help="keep the tasks done so far")
+    parser.add_argument("--report", action="store_true", help="only write what has been measured")
+    options = parser.parse_args()
+    options.kinds = options.kind.split(",") if options.kind else [*KINDS, NOTHING]
+    options.verify = options.verify.split(",")
+    for given, known in ((options.kinds, (*KINDS, NOTHING)), (options.verify, VERIFY)):
+        if unknown := [name for name in given if name not in known]:
+            parser.error(f"there is no {', '.join(unknown)}; there are {', '.join(known)}")
+    if quick():
+        options.n, options.quiet = min(options.n, 1), min(options.quiet, 1)
+        options.kinds = [*QUICK, NOTHING] if not options.kind else options.kinds
+    return options
+
+
+def main() -> int:
+    options = parse_arguments()
+    tasks = plan_tasks(options.kinds, options.verify, options.n, options.quiet, options.seed)
+    single = bool(options.kind or options.seed is not None)
+    AGAIN.mkdir(parents=True, exist_ok=True)
+    if not options.resume and not options.report:
+        for task in tasks:
+            task.path.unlink(missing_ok=True)
+    started = time.monotonic()
+    # Where a script put this into the background, SIGINT is ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    if options.share is not None:
+        mine = side_by_side.share_of(tasks, options)
+        return 0 if run_share(mine, options.real_time_factor, options.share) else 130
+    if not options.report:
+        whole = (
+            side_by_side.run_shares(options.jobs)
+            if options.jobs > 1
+            else run_share(tasks, options.real_time_factor)
+        )
+        if not whole:
+            print("\nstopped; RESUME=1 goes on with the tasks that are left")
+            return 130
+    records: list[dict[str, Any]] = [
+        json.loads(task.path.read_text()) for task in tasks if task.path.exists()
+    ]
+    if not records:
+        print("nothing has been measured yet", file=sys.stderr)
+        return 1
+    rows = make_rows(records)
+    print_rows(rows)
+    if single:
+        for record in records:
+            print(json.dumps(record, indent=1, ensure_ascii=False))
+        return 0
+    command = (
+        f"make eval-disturbances VERIFY={','.join(options.verify)} N={options.n} "
+        f"QUIET={options.quiet} RTF={options.real_time_factor:g}"
+        + (f" JOBS={options.jobs}" if options.jobs > 1 else "")
+    )
+    seconds = sum(record["wall_seconds"] for record in records) / options.jobs
+    path = write_result(
+        "disturbances", command, rows, max(seconds, time.monotonic() - started), details(records)
+    )
+    print(f"written to {path}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

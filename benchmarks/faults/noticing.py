@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whether what happened was noticed before the arm took the next block, by what the nodes say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
+
+
+def grasps(reports: Iterable[MotionReport]) -> list[int]:
+    """When blocks were taken [ns]: where a move's place begins for the first time."""
+    taken: dict[tuple[str, int], int] = {}
+    for report in reports:
+        if report.state is MotionState.EXECUTING and report.phase == "place":
+            taken.setdefault((report.plan_id, report.move), report.stamp)
+    return sorted(taken.values())
+
+
+def carried_between(reports: Iterable[MotionReport], begin: int, end: int) -> frozenset[str]:
+    """The blocks that were in the hand at some moment between two [ns]."""
+    carried, held = set(), ""
+    for report in reports:
+        if report.stamp > end:
+            break
+        if report.stamp >= begin:
+            carried.add(held)
+        held = report.held or (report.object_name if report.phase == "place" else "")
+        if report.stamp >= begin:
+            carried.add(held)
+    return frozenset({*carried, held} - {""})
+
+
+def noticed_at(reports: Sequence[MotionReport], stops: Iterable[int], after: int) -> int | None:
+    """When something was first found to be wrong after a moment [ns]; None: it was not.
+
+    That is where the planner asks the arm to stop, the motion node gives a plan up, or, at the
+    latest, another plan than that of this moment is begun.
+
+    Args:
+        reports: of the motion node, in order.
+        stops: when the planner asked for a stop [ns].
+    """
+    found = [stamp for stamp in stops if stamp > after]
+    plan_id = next((item.plan_id for item in reversed(reports)
+                    if item.plan_id and item.stamp <= after), "")  # fmt: skip
+    for report in reports:
+        if report.stamp <= after or not report.plan_id or report.plan_id.startswith("home-"):
+            continue
+        given_up = report.state is MotionState.EXECUTING and report.phase == "home"
+        given_up = given_up and report.moves_done < report.moves_total
+        if (
+            given_up
+            or report.state is MotionState.FAILED
+            or (plan_id and report.plan_id != plan_id)
+        ):
+            found.append(report.stamp)
+            break
+    return min(found, default=None)
+
+
+def _goes_home_early(report: MotionReport) -> bool:
+    going = report.state is MotionState.EXECUTING and report.phase == "home"
+    return going and report.moves_done < report.moves_total
+
+
+def noticed_in_time(
+    reports: Sequence[MotionReport], stops: Iterable[int], after: int, passed: int = 0
+) -> bool | None:
+    """Whether it was noticed before the next grasp; None where neither came.
+
+    Args:
+        passed: of the grasps after the moment, so many belong to what happened: a block slips
+            out of the hand that has just taken it, or fingers that are jammed do not take it.
+    """
+    later = [stamp for stamp in grasps(reports) if stamp > after][passed:]
+    noticed = noticed_at(reports, stops, after)
+    if noticed is None:
+        return False if later else None
+    return not later or noticed < later[0]
+
+
+def grasps_lost(reports: Iterable[MotionReport]) -> int:
+    """How many plans ended with a grasp that was lost."""
+    return len({report.plan_id for report in reports
+                if report.state is MotionState.FAILED
+                and report.reason is MotionReason.GRASP_LOST})  # fmt: skip

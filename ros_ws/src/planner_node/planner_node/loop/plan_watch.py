@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Watching while the arm moves: what is seen against what the plan predicts at that instant."""
+
+from __future__ import annotations
+
+import math
+
+from tamp_runtime.motion_report import MotionReport
+
+from scene_graph import UP, SceneGraph
+
+from .evidence import Evidence, Finding, Suspicion
+from .expectation import Expectation
+from .plan import Plan
+from .scene import Scene, Sighting
+from .timeline import Timeline
+
+
+class PlanWatch:
+    """Compares frames with a plan that is carried out.
+
+    Args:
+        patience: see :class:`.evidence.Evidence`.
+
+    Attributes:
+        contradiction: what was seen to happen, as a sentence; empty while all is as predicted.
+    """
+
+    def __init__(self, plan: Plan, patience: int = 1) -> None:
+        self._plan = plan
+        self._timeline = Timeline(len(plan.moves))
+        self._evidence = Evidence(Expectation(plan), patience)
+        self._newest = plan.scene.stamp
+        self.contradiction = ""
+
+    def hear(self, report: MotionReport) -> None:
+        """Takes a report of the motion node on the plan."""
+        self._timeline.note(report)
+
+    def see(self, sighting: Sighting | None) -> bool:
+        """Takes the newest frame; whether the plan is contradicted by now."""
+        if self.contradiction or sighting is None or sighting.defect:
+            return bool(self.contradiction)
+        if sighting.stamp <= self._newest or self._timeline.off_course:
+            return False
+        self._newest = sighting.stamp
+        steps = self._timeline.steps_at(sighting.stamp)
+        if (certain := self._evidence.weigh(sighting, steps)) is not None:
+            self.contradiction = self._sentence(certain, sighting.graph)
+        return bool(self.contradiction)
+
+    def is_as_predicted(self, scene: Scene, moves_done: int) -> bool:
+        """Whether a scene is as the plan predicts it after so many moves, to the last block."""
+        expected = self._evidence.expectation.at(2 * min(moves_done, len(self._plan.moves)))
+        seen = {item.name: item.position_world for item in scene.graph.objects}
+        return seen.keys() == expected.keys() and all(
+            rest is not None and rest.holds(seen[name]) for name, rest in expected.items()
+        )
+
+    def _sentence(self, certain: Suspicion, graph: SceneGraph) -> str:
+        finding, moves = certain.finding, len(self._plan.moves)
+        if certain.step < 2 * moves:
+            since = f"since move {certain.step // 2 + 1} of {moves}"
+        else:
+            since = "since the last move"
+        name, rest, seen = finding.name, finding.expected, _where(finding, graph)
+        if rest is None:
+            return f"{name} is seen {seen} {since}, and was not there before"
+        return f"{name} was expected on {rest.support} and is {seen} {since}"
+
+
+def _where(finding: Finding, graph: SceneGraph) -> str:
+    """Where a block is seen: by what it stands on, or by how far it is from where it stood."""
+    position, rest = finding.position_world, finding.expected
+    if position is None:
+        return "not seen any more"
+    on = [item.object for item in graph.relations if (item.subject, item.predicate) ==
+          (finding.name, UP)]  # fmt: skip
+    if rest is None:
+        return f"on {on[0]}" if on else _point(position)
+    if on and on[0] != rest.support:
+        return f"seen on {on[0]}"
+    away = math.dist(position[:2], rest.position_world[:2])
+    if away > rest.tolerance:
+        return f"seen {1000 * away:.0f} mm beside where it was to be"
+    return f"seen {_point(position)}"
+
+
+def _point(position: tuple[float, float, float]) -> str:
+    x, y, z = position
+    return f"at ({x:.2f}, {y:.2f}, {z:.2f}) m"

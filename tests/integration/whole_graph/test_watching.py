@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The four nodes in one process, with a planner that watches while the arm moves."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from rclpy.parameter import Parameter
+from tamp_interfaces.action import AchieveGoal
+from tamp_interfaces.srv import Disturb
+
+from motion_node.node import MotionNode
+from perception_node.node import PerceptionNode
+from planner_node.cli.client import PlannerClient
+from planner_node.node import PlannerNode
+from sim_node.cli.client import DisturbClient
+from sim_node.node import SimNode
+
+#: How long a thing may take on a machine that has a lot to do [s].
+PATIENCE = 120.0
+LAYOUT = ["red_box,blue_box,yellow_box", "", "green_box,cyan_box"]
+#: Turns a tower of three upside down, and more: the arm is under way for a while.
+GOAL = "yellow on stack1, blue on yellow, red on blue, cyan on red, green on stack0"
+
+
+@pytest.fixture
+def graph(ros_context: Any) -> Any:
+    context = ros_context.context
+    clock = Parameter("use_sim_time", value=True)
+    ros_context.add(
+        SimNode(context=context, parameter_overrides=[Parameter("layout", value=LAYOUT)])
+    )
+    for kind in (PerceptionNode, MotionNode):
+        ros_context.add(kind(context=context, parameter_overrides=[clock]))
+    watch = Parameter("verify", value="watch")
+    ros_context.add(PlannerNode(context=context, parameter_overrides=[clock, watch]))
+    return context
+
+
+@pytest.mark.timeout(900)
+def test_what_nobody_disturbs_is_not_stopped_and_a_swap_is_noticed_under_way(graph: Any) -> None:
+    with PlannerClient(context=graph) as planner, DisturbClient(context=graph) as simulator:
+        planner.start("cyan on yellow", timeout=PATIENCE)
+        result = planner.result(timeout=3.0 * PATIENCE)
+        assert result.status == result.SUCCESS, result.message
+        assert not [cause for cause in result.causes if "expected" in cause]
+
+        planner.start("cyan on green", timeout=PATIENCE)
+        assert planner.result(timeout=3.0 * PATIENCE).status == AchieveGoal.Result.SUCCESS
+
+        planner.start(GOAL, timeout=PATIENCE)
+        while not (feedback := planner.next_feedback(PATIENCE)) or feedback.motion.phase != "pick":
+            assert not planner.is_done(), planner.result(PATIENCE).message
+        swap = Disturb.Request(kind=Disturb.Request.SWAP, blocks=["red_box", "green_box"])
+        answer = simulator.disturb(swap, PATIENCE)
+        assert answer.success, answer.message
+        result = planner.result(timeout=5.0 * PATIENCE)
+        assert result.status == AchieveGoal.Result.SUCCESS, result.message
+        assert result.replans >= 1
+        # Stopped under way, before all that was planned at first had been carried out.
+        told = [cause for cause in result.causes if "was expected on" in cause]
+        assert told and "since move" in told[0]
+        assert told[0] in result.message

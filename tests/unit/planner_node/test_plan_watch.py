@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is seen while the arm moves, against what the plan predicts at that instant."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from posed_scenes import FRAME, SECOND, Instant, Point, centre, frame, instants, plan_of
+from tamp_runtime.motion_report import MotionReport, MotionState
+
+from planner_node.loop import Plan, Sighting
+from planner_node.loop.plan_watch import PlanWatch
+from scene_graph import GraphStatus, Move, Stacks, all_moves
+
+NAMES = ("red_box", "green_box", "blue_box", "yellow_box", "cyan_box")
+START: Stacks = (("red_box", "blue_box"), ("green_box",), ())
+MOVES = (Move(0, 2), Move(0, 1), Move(2, 1))
+#: Where each block may be put by somebody: beside the places, between them, on them, in the air.
+SOMEWHERE = st.tuples(st.floats(0.4, 0.6), st.floats(-0.2, 0.2), st.floats(0.02, 0.3))
+
+
+@st.composite
+def plans(draw: st.DrawFn) -> Plan:
+    """Random moves in a random state of up to five blocks."""
+    names = draw(st.permutations(NAMES))[: draw(st.integers(1, 5))]
+    cuts = sorted(draw(st.tuples(*[st.integers(0, len(names))] * 2)))
+    stacks = names[: cuts[0]], names[cuts[0] : cuts[1]], names[cuts[1] :]
+    state = [list(stack) for stack in stacks]
+    moves = []
+    for _ in range(draw(st.integers(1, 4))):
+        move = draw(st.sampled_from([move for move in all_moves(3) if state[move.source]]))
+        state[move.target].append(state[move.source].pop())
+        moves.append(move)
+    return plan_of(tuple(map(tuple, stacks)), tuple(moves))
+
+
+def watch_all(watch: PlanWatch, plan: Plan, late: int = 0) -> None:
+    """All goes as predicted; the reports are late, and stamped late."""
+    reports: list[MotionReport] = []
+    for instant in instants(plan):
+        if instant.begins:
+            reports.append(instant.report(plan, late))
+        while reports and reports[0].stamp <= instant.stamp:
+            watch.hear(reports.pop(0))
+        watch.see(instant.frame())
+
+
+@given(plans(), st.integers(0, 3))
+def test_frames_as_predicted_never_contradict_at_whatever_phase(plan: Plan, late: int) -> None:
+    watch = PlanWatch(plan)
+    watch_all(watch, plan, late * FRAME)
+    assert watch.contradiction == ""
+
+
+@given(plans(), st.integers(0, 3), st.floats(0.0, 0.0105), st.floats(0.0, math.tau))
+def test_a_block_that_hardly_moved_contradicts_nothing(
+    plan: Plan, late: int, away: float, angle: float
+) -> None:
+    name = plan.scene.graph.names[0]
+    watch = PlanWatch(plan)
+    for instant in instants(plan):
+        if instant.begins:
+            watch.hear(instant.report(plan, late))
+        moved = {}
+        if name != instant.held:
+            x, y, z = standing(instant, name)
+            moved[name] = (x + away * math.cos(angle), y + away * math.sin(angle), z)
+        watch.see(instant.frame(moved))
+    assert watch.contradiction == ""
+
+
+def standing(instant: Instant, name: str) -> Point:
+    return next(
+        centre(index, stack.index(name))
+        for index, stack in enumerate(instant.stacks)
+        if name in stack
+    )
+
+
+@given(plans(), st.data())
+def test_any_block_that_is_displaced_in_the_view_is_noticed(
+    plan: Plan, data: st.DataObject
+) -> None:
+    course = list(instants(plan))
+    begin = data.draw(st.integers(0, len(course) - 1))
+    name = data.draw(st.sampled_from(plan.scene.graph.names))
+    later = course[begin:]
+    # It is not about to be taken, nor has it just been put down.
+    around = [item for item in course if abs(item.stamp - course[begin].stamp) <= SECOND]
+    assume(all(item.held != name for item in around))
+    assume(len(later) >= 4)
+    there = data.draw(SOMEWHERE)
+    # Straight above where it stood it may be in the hand already.
+    assume(math.dist(there[:2], standing(course[begin], name)[:2]) > 0.04)
+    watch = PlanWatch(plan)
+    for item in course[:begin]:
+        if item.begins:
+            watch.hear(item.report(plan))
+        watch.see(item.frame())
+    for item in later[:4]:
+        if item.begins:
+            watch.hear(item.report(plan))
+        watch.see(item.frame({name: there}))
+    assert watch.contradiction.startswith(f"{name} was expected on ")
+
+
+def course_of(step: int, count: int = 12) -> tuple[Plan, PlanWatch, list[Instant]]:
+    """A watch over a plan that has come to a step, and the instants of this step."""
+    plan = plan_of(START, MOVES)
+    watch = PlanWatch(plan)
+    left = []
+    for instant in instants(plan, count):
+        if instant.step > step:
+            break
+        if instant.begins:
+            watch.hear(instant.report(plan))
+        if instant.step < step:
+            watch.see(instant.frame())
+        else:
+            left.append(instant)
+    return plan, watch, left
+
+
+def exchanged(instant: Instant, one: str, other: str) -> Sighting:
+    names = {one: other, other: one}
+    stacks = tuple(tuple(names.get(name, name) for name in stack) for stack in instant.stacks)
+    return frame(stacks, instant.stamp, hidden=(0.7, 0.0, 0.0))
+
+
+def test_two_blocks_that_changed_places_are_told_by_where_they_are_seen() -> None:
+    _, watch, course = course_of(2)
+    assert [watch.see(exchanged(item, "green_box", "blue_box")) for item in course[6:8]] == [
+        False,
+        True,
+    ]
+    assert watch.contradiction in (
+        "green_box was expected on stack1 and is seen on stack2 since move 2 of 3",
+        "blue_box was expected on stack2 and is seen on stack1 since move 2 of 3",
+    )
+
+
+def test_one_frame_is_enough_that_perception_is_sure_of() -> None:
+    _, watch, course = course_of(0)
+    moved = {"green_box": (0.53, 0.02, 0.0225)}
+    assert watch.see(course[0].frame(moved, status=GraphStatus.CONFIDENT, hidden=(0.0,) * 3))
+    assert watch.contradiction == (
+        "green_box was expected on stack1 and is seen 36 mm beside where it was to be "
+        "since move 1 of 3"
+    )
+
+
+def test_a_single_odd_frame_is_no_contradiction() -> None:
+    _, watch, course = course_of(2)
+    for number, item in enumerate(course):
+        moved: dict[str, Point | None] = {"green_box": centre(2, 3)} if number % 2 else {}
+        assert not watch.see(item.frame(moved))
+
+
+def test_a_block_that_is_gone_is_missed_only_where_nothing_hides_its_place() -> None:
+    _, watch, course = course_of(2)
+    for item in course[:6]:
+        assert not watch.see(item.frame({"green_box": None}, hidden=(0.0, 0.1, 0.0)))
+    assert [watch.see(item.frame({"green_box": None})) for item in course[6:8]] == [False, True]
+    assert watch.contradiction == (
+        "green_box was expected on stack1 and is not seen any more since move 2 of 3"
+    )
+
+
+def test_a_block_of_which_little_is_seen_contradicts_nothing() -> None:
+    _, watch, course = course_of(2)
+    for item in course:
+        assert not watch.see(item.frame({"green_box": centre(2, 3)}, visible=0.2))
+
+
+def test_nothing_is_seen_on_a_sheet_of_paper() -> None:
+    _, watch, course = course_of(1)
+    for item in course:
+        nothing = {name: None for name in NAMES}
+        assert not watch.see(item.frame(nothing, hidden=(1.0, 1.0, 1.0)))
+
+
+def test_another_block_on_a_place_is_noticed_and_a_part_of_the_arm_is_not() -> None:
+    _, watch, course = course_of(1)
+    for item in course[:8]:
+        assert not watch.see(item.frame({"grey_box": (0.437, 0.08, 0.3)}))
+    for item in course[8:10]:
+        watch.see(item.frame({"grey_box": centre(2, 0)}))
+    assert not watch.contradiction  # two frames: it may still be the arm
+    _, watch, course = course_of(1)
+    for item in course[:3]:
+        watch.see(item.frame({"grey_box": centre(1, 1)}))
+    assert watch.contradiction == (
+        "grey_box is seen at (0.50, 0.00, 0.07) m since move 1 of 3, and was not there before"
+    )
+
+
+@pytest.mark.parametrize("step", [0, 2, 4])
+def test_the_block_that_is_picked_is_watched_until_it_is_taken(step: int) -> None:
+    plan, watch, course = course_of(step)
+    name = plan.blocks[step // 2]
+    for item in course[6:10]:
+        x, y, z = standing(item, name)
+        watch.see(item.frame({name: (x + 0.03, y, z)}))
+    assert watch.contradiction.startswith(f"{name} was expected on ")
+
+
+def test_after_the_last_move_the_goal_is_watched_on() -> None:
+    plan, watch, course = course_of(2 * len(MOVES))
+    for item in course[6:9]:
+        watch.see(item.frame({"red_box": centre(0, 0)}))
+    assert watch.contradiction == (
+        "red_box was expected on green_box and is seen 150 mm beside where it was to be "
+        "since the last move"
+    )
+    assert plan.states[-1][1] == ("green_box", "red_box", "blue_box")
+
+
+def test_frames_of_before_and_those_of_a_plan_that_was_given_up_say_nothing() -> None:
+    plan = plan_of(START, MOVES, stamp=5 * SECOND)
+    watch = PlanWatch(plan)
+    elsewhere: dict[str, Point | None] = {"green_box": centre(2, 0)}
+    sure = GraphStatus.CONFIDENT
+    assert not watch.see(frame(START, 5 * SECOND, elsewhere, sure))
+    assert not watch.see(None)
+    going_home = MotionReport(plan.plan_id, MotionState.EXECUTING, phase="home", moves_done=1)
+    watch.hear(going_home)
+    assert not watch.see(frame(START, 6 * SECOND, elsewhere, sure))
+
+
+def test_more_patience_takes_as_many_times_as_many_frames() -> None:
+    plan = plan_of(START, MOVES)
+    watch = PlanWatch(plan, patience=3)
+    course = [item for item in instants(plan) if item.step == 0]
+    told = [watch.see(item.frame({"green_box": centre(2, 0)})) for item in course[:6]]
+    assert told == [False] * 5 + [True]
+
+
+def test_an_alarm_that_a_look_does_not_confirm_is_found_out() -> None:
+    plan = plan_of(START, MOVES)
+    watch = PlanWatch(plan)
+    seen = plan.scene
+    assert watch.is_as_predicted(seen, 0)
+    assert not watch.is_as_predicted(seen, 1)
