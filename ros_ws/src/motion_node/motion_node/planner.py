@@ -15,10 +15,18 @@ from scene_graph import Move, SceneGraph
 
 from .blocks import read_scene
 from .bounds import Keyframes, PathProblem, SwitchProblems, check_widths
-from .constraints import Clearances, Constraint, default_constraints
+from .constraints import (
+    Clearances,
+    Constraint,
+    ObstacleClearance,
+    capacity_for,
+    default_constraints,
+)
+from .choosing import first_possible
 from .errors import PATH, CancelledError, InfeasibleError
-from .expand import expand, open_tool, put_down, rise_home, something_held, way_home
+from .expand import Choice, expand, open_tool, put_down, rise_home, something_held, way_home
 from .nlp import SOLVERS
+from .obstacles import Obstacle
 from .phases import HOME, PLACE, Phase, PhasePath
 from .robots import PANDA, Arm
 from .robots.inverse_kinematics import InverseKinematics
@@ -66,6 +74,7 @@ class MotionPlanner:
     Args:
         description: the URDF's text.
         constraints: what motions have to keep to; :func:`default_constraints` if not given.
+        obstacles: what stands around besides blocks.
 
     Attributes:
         model: the arm with its URDF.
@@ -83,6 +92,7 @@ class MotionPlanner:
         arm: Arm = PANDA,
         settings: Settings | None = None,
         constraints: Sequence[Constraint] | None = None,
+        obstacles: Sequence[Obstacle] = (),
     ) -> None:
         self.arm = arm
         self.settings = settings or Settings()
@@ -94,6 +104,10 @@ class MotionPlanner:
         self.model = ArmModel(description, arm, self.settings.limit_margin)
         self.inverse = InverseKinematics(self.model)
         chosen = default_constraints(arm) if constraints is None else constraints
+        self.obstacles = tuple(obstacles)
+        if obstacles:
+            capacity = capacity_for(len(obstacles))
+            chosen = (*chosen, ObstacleClearance(arm, obstacles, capacity))
         self.constraints = tuple(chosen)
         self.limits = JointLimits(self.model.kinematics.velocity, np.array(arm.acceleration))
         self.timing = self.settings.timing
@@ -104,7 +118,8 @@ class MotionPlanner:
         if stacks not in self._bounds:
             problems = SwitchProblems(self.model, stacks, self.constraints, self._solver)
             path = self.path_problem(stacks)
-            self._bounds[stacks] = (Keyframes(problems, self.inverse), path)
+            keyframes = Keyframes(problems, self.inverse, bool(self.obstacles))
+            self._bounds[stacks] = (keyframes, path)
         keyframes, path = self._bounds[stacks]
         if moves:
             keyframes.problems.problem(2 * moves)
@@ -121,6 +136,7 @@ class MotionPlanner:
             self.settings.path,
             self._solver,
             phases,
+            self.obstacles,
         )
 
     def solve(
@@ -147,11 +163,20 @@ class MotionPlanner:
         """
         begin = time.perf_counter()
         scene, settings = read_scene(graph), self.settings
-        phases = expand(
-            scene, moves, self.arm.gripper, settings.phases, settings.squeeze, object_names
-        )
-        try:
+
+        def phases_for(choices: Sequence[Choice]) -> list[Phase]:
+            return expand(
+                *(scene, moves, self.arm.gripper, settings.phases, settings.squeeze),
+                *(object_names, choices),
+            )
+
+        def solve(phases: Sequence[Phase]) -> Motion:
             return self._solve(phases, scene.floor, arm, fingers, cancelled, begin)
+
+        try:
+            if self.obstacles:
+                return first_possible(len(moves), phases_for, solve)
+            return solve(phases_for(()))
         except InfeasibleError as error:
             if scene.aside:
                 error.add(f"in the plan's scene {scene.aside}")

@@ -13,6 +13,7 @@ from ..errors import KEYFRAMES
 from ..phases import Phase
 from ..robots.inverse_kinematics import InverseKinematics
 from .pose import Poses
+from .pose_among_obstacles import PosesAmongObstacles
 from .switches import SwitchProblems
 
 Array = NDArray[np.float64]
@@ -21,9 +22,13 @@ Array = NDArray[np.float64]
 class Keyframes:
     """Solves P1 for each switch, then P2 from there."""
 
-    def __init__(self, problems: SwitchProblems, inverse: InverseKinematics) -> None:
+    def __init__(
+        self, problems: SwitchProblems, inverse: InverseKinematics, obstacles: bool = False
+    ) -> None:
+        """``obstacles``: whether there is more around than blocks."""
         self.problems = problems
         self._poses = Poses(problems, inverse)
+        self._among = PosesAmongObstacles(problems, inverse) if obstacles else None
 
     def solve(self, start: Array, phases: Sequence[Phase], clear: Clearances) -> Array:
         """Configurations at the switches of all phases but the way home, shape (k, n) [rad].
@@ -39,6 +44,11 @@ class Keyframes:
         if not phases:
             return np.zeros((0, self.problems.model.dimension))
         demands = self.problems.demands(phases, clear)
+        if self._among is not None:
+            poses = self._among.solve_all(phases, clear)
+            solution = self.problems.solve(start, poses, demands, thorough=False)
+            # No constraint reaches from switch to switch: the poses are a solution, if not the best.
+            return solution.x[1:-1] if solution.feasible else np.array(poses)
         poses = self._poses.solve(phases, demands)
         solution = self.problems.solve(start, poses, demands)
         if solution.feasible:
