@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from scene_graph import Move, SceneGraph
 
-from .blocks import read_scene
+from .blocks import Scene, read_scene
 from .bounds import Keyframes, PathProblem, SwitchProblems, check_widths
 from .constraints import (
     Clearances,
@@ -23,11 +23,13 @@ from .constraints import (
     default_constraints,
 )
 from .choosing import first_possible
+from .dense_check import check as dense_check
 from .errors import PATH, CancelledError, InfeasibleError
 from .expand import Choice, expand, open_tool, put_down, rise_home, something_held, way_home
 from .nlp import SOLVERS
 from .obstacles import Obstacle
 from .phases import HOME, PLACE, Phase, PhasePath
+from .refining import refined
 from .robots import PANDA, Arm
 from .robots.inverse_kinematics import InverseKinematics
 from .robots.model import ArmModel
@@ -105,7 +107,11 @@ class MotionPlanner:
         self.inverse = InverseKinematics(self.model)
         chosen = default_constraints(arm) if constraints is None else constraints
         self.obstacles = tuple(obstacles)
+        self._shape = self.settings.path
         if obstacles:
+            # Steps so near to one another that no wall fits in between.
+            between = self._shape.steps - 2 * self._shape.vertical
+            self._shape = replace(self._shape, steps=self._shape.steps + between)
             capacity = capacity_for(len(obstacles))
             chosen = (*chosen, ObstacleClearance(arm, obstacles, capacity))
         self.constraints = tuple(chosen)
@@ -133,7 +139,7 @@ class MotionPlanner:
             self.constraints,
             self.inverse,
             self.limits.acceleration,
-            self.settings.path,
+            self._shape,
             self._solver,
             phases,
             self.obstacles,
@@ -171,7 +177,7 @@ class MotionPlanner:
             )
 
         def solve(phases: Sequence[Phase]) -> Motion:
-            return self._solve(phases, scene.floor, arm, fingers, cancelled, begin)
+            return self._solve(phases, scene.floor, arm, fingers, cancelled, begin, scene=scene)
 
         try:
             if self.obstacles:
@@ -251,6 +257,7 @@ class MotionPlanner:
         cancelled: Callable[[], bool] = lambda: False,
         begin: float = 0.0,
         opening: bool = True,
+        scene: Scene | None = None,
     ) -> Motion:
         def check() -> None:
             if cancelled():
@@ -262,11 +269,26 @@ class MotionPlanner:
         clear = Clearances(self.settings.path.margin, floor)
         switching = [phase for phase in phases if phase.kind != HOME]
         configurations = [arm, *keyframes.solve(arm, switching, clear), self.model.home]
-        paths: list[PhasePath] = []
-        for phase, start, goal in zip(phases, configurations, configurations[1:]):
+        ends = list(zip(configurations, configurations[1:]))
+
+        def solve_one(index: int, kept: Clearances) -> PhasePath:
             check()
-            paths += problem.solve([phase], [start, goal], clear)
+            return problem.solve([phases[index]], ends[index], kept)[0]
+
+        def timed(paths: Sequence[PhasePath]) -> Trajectory:
+            first = self.arm.gripper.finger_travel if opening else None
+            return time_paths(paths, self.limits, self.timing, fingers, first)
+
+        paths = [solve_one(index, clear) for index in range(len(phases))]
         check()
-        first = self.arm.gripper.finger_travel if opening else None
-        trajectory = time_paths(paths, self.limits, self.timing, fingers, first)
+        if self.obstacles:
+            names = frozenset(item.name for item in self.obstacles)
+            around = self.obstacles
+            paths, trajectory = refined(
+                *(paths, clear, solve_one, timed),
+                lambda sent: dense_check(self.model, sent, scene, around, floor=floor),
+                names,
+            )
+        else:
+            trajectory = timed(paths)
         return Motion(tuple(phases), tuple(paths), trajectory, floor, time.perf_counter() - begin)

@@ -95,8 +95,14 @@ class ObstacleClearance(Constraint):
         return self._demand(moment.phase, moment.clear.margin, 1)
 
     def along_path(self, way: AlongPath) -> Demand:
-        """Apart at each step."""
-        return self._demand(way.phase, way.clear.margin, way.steps)
+        """Apart at each step, more so between the vertical ends."""
+        demand = self._demand(way.phase, way.clear.margin, way.steps)
+        if way.clear.extra:
+            between = np.ones(way.steps, dtype=bool)
+            for _, here in way.vertical:
+                between[here] = False
+            demand.parameters[between, -1] += way.clear.extra
+        return demand
 
     def _demand(self, phase: Phase, margin: float, steps: int) -> Demand:
         tool = phase.tool
