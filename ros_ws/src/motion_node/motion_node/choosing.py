@@ -10,11 +10,50 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
+from scene_graph import Move
+
+from .blocks import Scene
 from .errors import MOVING, PATH, PUTTING, SCENE, TAKING, InfeasibleError
 from .expand import Choice
 from .phases import PICK, Phase
 
 Found = TypeVar("Found")
+
+
+def solve_choosing(
+    scene: Scene,
+    moves: Sequence[Move],
+    phases_for: Callable[[Scene, Sequence[Move], Sequence[Choice]], Sequence[Phase]],
+    solve: Callable[[Sequence[Phase], Scene, bool], Found],
+    only_for: Callable[[int], Scene],
+) -> Found:
+    """What ``solve`` gives for the first choices that no bound refuses.
+
+    Args:
+        phases_for: the phases that choices, one a move, lead to in a scene.
+        solve: phases in a scene, from where the arm is or (True) from home.
+        only_for: the scene before a move with no other stacks than the move's two.
+
+    Raises:
+        InfeasibleError: a move that is refused with all choices; ``excludes`` tells how widely.
+    """
+
+    def attempt(own: Scene, some: Sequence[Move], at_home: bool) -> Found:
+        return first_possible(
+            len(some),
+            lambda choices: phases_for(own, some, choices),
+            lambda phases: solve(phases, own, at_home),
+        )
+
+    try:
+        return attempt(scene, moves, False)
+    except InfeasibleError as error:
+        if error.bound == PATH and error.move < len(moves):
+            try:
+                attempt(only_for(error.move), [moves[error.move]], True)
+            except InfeasibleError:
+                error.excludes = MOVING
+        raise
 
 
 def first_possible(
@@ -42,6 +81,7 @@ def first_possible(
             move = min(error.move, moves - 1)
             if move < 0:
                 raise
+            error.excludes = error.excludes or SCENE
             refused[move].append(error)
             grasps = max(phase.grasps for phase in phases if phase.move == move)
             following = _after(choices[move], grasps, error)
@@ -62,7 +102,7 @@ def _after(choice: Choice, grasps: int, error: InfeasibleError) -> Choice | None
 
 
 def _verdict(refused: Sequence[InfeasibleError]) -> InfeasibleError:
-    """Of the refusals of a move that of the choice that got farthest, and what they exclude together.
+    """Of a move's refusals that of the choice that got farthest, and what they exclude together.
 
     Of equals the one that misses least.
     """

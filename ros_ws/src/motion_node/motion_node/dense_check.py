@@ -3,8 +3,8 @@
 
 Nothing of the optimisation is used: the trajectory's own cubics, kinematics in numbers, the blocks
 where they were seen and where the hand takes them, hulls that cover the arm's meshes. Between two
-moments a body moves by no more than its joints' turns times their arms, so a stretch of time is free
-if the gaps at its ends are larger than that together; if they are not, it is halved.
+moments a body moves by no more than its joints' turns times their arms, so a stretch of time is
+free if the gaps at its ends are larger than that together; if they are not, it is halved.
 """
 
 from __future__ import annotations
@@ -213,7 +213,9 @@ class _WayCheck:
         if self._hold is not None:
             block, turn, offset = self._hold
             size = np.array(block.size) / 2
-            bodies.append((block.name, MovingBox(rotation @ turn, origin + rotation @ offset, size)))
+            bodies.append(
+                (block.name, MovingBox(rotation @ turn, origin + rotation @ offset, size))
+            )
         for ball in (*arm.bodies, *arm.upper_bodies):
             pose = poses[ball.link]
             center = pose[:, :3, 3] + pose[:, :3, :3] @ np.array(ball.center)

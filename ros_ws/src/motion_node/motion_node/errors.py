@@ -10,8 +10,8 @@ POSE: Final = "pose"
 KEYFRAMES: Final = "keyframes"
 PATH: Final = "path"
 
-#: What of a move cannot be, as MotionStatus spells it: taking the block from where it stands, putting
-#: it there, both of one move, each wherever the other blocks are, or the move in this scene.
+#: What of a move cannot be, as MotionStatus spells it: taking the block from where it stands,
+#: putting it there, both in one move, each wherever the others are, or the move in this scene.
 TAKING: Final = "taking"
 PUTTING: Final = "putting"
 MOVING: Final = "moving"

@@ -13,7 +13,7 @@ from scene_graph import Move, Place, base_name, wrap_line
 
 from .blocks import Block, Column, Scene, placed
 from .errors import InvalidPlanError
-from .grasps import Circumstances, Grasp, grasps_for
+from .grasps import Circumstances, Grasp, choose_grasp, grasps_for
 from .phases import HOME, PICK, PLACE, Phase, Switch, Tool
 from .robots import Gripper
 from .settings import PhaseSettings
@@ -109,6 +109,24 @@ def expand(
         scene = scene.with_top(target, after)
     tool, travel = open_tool(gripper), gripper.finger_travel
     return [*phases, Phase(HOME, len(moves), "", None, start, tool, scene.columns, travel)]
+
+
+def only_for(
+    scene: Scene, moves: Sequence[Move], index: int, gripper: Gripper, settings: PhaseSettings
+) -> Scene:
+    """The scene before a move of a plan, with no other stacks than the move's two."""
+    for move in moves[:index]:
+        block = scene.stacks[move.source][-1]
+        circumstances = Circumstances(gripper, free_yaw(scene.places, move.source))
+        grasp = choose_grasp(block, circumstances, settings.max_grasp_width)
+        scene = scene.without_top(move.source)
+        support = scene.stacks[move.target][-1] if scene.stacks[move.target] else None
+        base = scene.places[move.target].position_world
+        after = placed(block, grasp.placed_yaw, base, support, settings.max_overhang)
+        scene = scene.with_top(move.target, after)
+    own = (moves[index].source, moves[index].target)
+    stacks = tuple(stack if place in own else () for place, stack in enumerate(scene.stacks))
+    return replace(scene, stacks=stacks)
 
 
 def _taken(scene: Scene, index: int, move: Move, expected: str) -> Block:

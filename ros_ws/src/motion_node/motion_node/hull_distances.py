@@ -39,9 +39,7 @@ class Upright:
 
     def __getitem__(self, index: NDArray[np.int_]) -> Upright:
         """Those at an index, one a row, names left out."""
-        return Upright(
-            (), self.center[index], self.half[index], self.yaw[index], self.round[index]
-        )
+        return Upright((), self.center[index], self.half[index], self.yaw[index], self.round[index])
 
     @property
     def radius(self) -> Array:

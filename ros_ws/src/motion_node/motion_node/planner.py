@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -15,6 +16,7 @@ from scene_graph import Move, SceneGraph
 
 from .blocks import Scene, read_scene
 from .bounds import Keyframes, PathProblem, SwitchProblems, check_widths
+from .choosing import solve_choosing
 from .constraints import (
     Clearances,
     Constraint,
@@ -22,10 +24,19 @@ from .constraints import (
     capacity_for,
     default_constraints,
 )
-from .choosing import first_possible
 from .dense_check import check as dense_check
 from .errors import PATH, CancelledError, InfeasibleError
-from .expand import Choice, expand, open_tool, put_down, rise_home, something_held, way_home
+from .expand import (
+    Choice,
+    expand,
+    only_for,
+    open_tool,
+    put_down,
+    rise_home,
+    something_held,
+    way_home,
+)
+from .motion import Motion
 from .nlp import SOLVERS
 from .obstacles import Obstacle
 from .phases import HOME, PLACE, Phase, PhasePath
@@ -38,6 +49,8 @@ from .timing.fastest import JointLimits
 from .timing.time_paths import time_paths
 from .timing.trajectory import Trajectory
 
+__all__ = ["Motion", "MotionPlanner"]
+
 Array = NDArray[np.float64]
 
 #: Number of stacks where nobody has said how many there are.
@@ -46,25 +59,6 @@ USUAL_STACKS: Final = 3
 TALLEST: Final = 0.35
 #: Above the highest known stack, where the arm cannot rise to ``TALLEST`` [m].
 SPARE_RISE: Final = 0.03
-
-
-@dataclass(frozen=True)
-class Motion:
-    """A plan as a motion.
-
-    Attributes:
-        phases: the phases in order, the way home last.
-        paths: their paths.
-        trajectory: the paths in time.
-        floor: height of the table [m].
-        seconds: wall time that finding it took [s].
-    """
-
-    phases: tuple[Phase, ...]
-    paths: tuple[PhasePath, ...]
-    trajectory: Trajectory
-    floor: float
-    seconds: float
 
 
 class MotionPlanner:
@@ -107,13 +101,14 @@ class MotionPlanner:
         self.inverse = InverseKinematics(self.model)
         chosen = default_constraints(arm) if constraints is None else constraints
         self.obstacles = tuple(obstacles)
-        self._shape = self.settings.path
+        self._shape, self._among = self.settings.path, None
         if obstacles:
             # Steps so near to one another that no wall fits in between.
             between = self._shape.steps - 2 * self._shape.vertical
             self._shape = replace(self._shape, steps=self._shape.steps + between)
-            capacity = capacity_for(len(obstacles))
-            chosen = (*chosen, ObstacleClearance(arm, obstacles, capacity))
+            among = ObstacleClearance(arm, obstacles, capacity_for(len(obstacles)))
+            self._among = among
+            chosen = (*chosen, among)
         self.constraints = tuple(chosen)
         self.limits = JointLimits(self.model.kinematics.velocity, np.array(arm.acceleration))
         self.timing = self.settings.timing
@@ -130,6 +125,19 @@ class MotionPlanner:
         if moves:
             keyframes.problems.problem(2 * moves)
         return keyframes, path
+
+    def surround(self, obstacles: Sequence[Obstacle]) -> None:
+        """Other obstacles from now on, for a planner that was made with as many or more.
+
+        Raises:
+            ValueError: if there are more than its problems are built for.
+        """
+        if not obstacles or self._among is None or len(obstacles) > self._among.capacity:
+            raise ValueError(f"the problems are not built for {len(obstacles)} obstacles")
+        self.obstacles = tuple(obstacles)
+        self._among.surround(obstacles)
+        for _, path in self._bounds.values():
+            path.obstacles = self.obstacles
 
     def path_problem(self, stacks: int, phases: int = 1) -> PathProblem:
         """P3 for a number of stacks, over one phase or several that are solved at once."""
@@ -169,20 +177,25 @@ class MotionPlanner:
         """
         begin = time.perf_counter()
         scene, settings = read_scene(graph), self.settings
+        gripper = self.arm.gripper
 
-        def phases_for(choices: Sequence[Choice]) -> list[Phase]:
-            return expand(
-                *(scene, moves, self.arm.gripper, settings.phases, settings.squeeze),
-                *(object_names, choices),
-            )
+        def phases_for(
+            own: Scene, some: Sequence[Move], choices: Sequence[Choice]
+        ) -> Sequence[Phase]:
+            names = object_names if own is scene else ()
+            return expand(own, some, gripper, settings.phases, settings.squeeze, names, choices)
 
-        def solve(phases: Sequence[Phase]) -> Motion:
-            return self._solve(phases, scene.floor, arm, fingers, cancelled, begin, scene=scene)
+        def solve(phases: Sequence[Phase], own: Scene, at_home: bool) -> Motion:
+            start = self.model.home if at_home else arm
+            return self._solve(phases, scene.floor, start, fingers, cancelled, begin, scene=own)
 
         try:
-            if self.obstacles:
-                return first_possible(len(moves), phases_for, solve)
-            return solve(phases_for(()))
+            if not self.obstacles:
+                return solve(phases_for(scene, moves, ()), scene, False)
+            return solve_choosing(
+                *(scene, moves, phases_for, solve),
+                lambda move: only_for(scene, moves, move, gripper, settings.phases),
+            )
         except InfeasibleError as error:
             if scene.aside:
                 error.add(f"in the plan's scene {scene.aside}")
@@ -269,7 +282,7 @@ class MotionPlanner:
         clear = Clearances(self.settings.path.margin, floor)
         switching = [phase for phase in phases if phase.kind != HOME]
         configurations = [arm, *keyframes.solve(arm, switching, clear), self.model.home]
-        ends = list(zip(configurations, configurations[1:]))
+        ends = list(pairwise(configurations))
 
         def solve_one(index: int, kept: Clearances) -> PhasePath:
             check()
@@ -282,12 +295,10 @@ class MotionPlanner:
         paths = [solve_one(index, clear) for index in range(len(phases))]
         check()
         if self.obstacles:
-            names = frozenset(item.name for item in self.obstacles)
-            around = self.obstacles
             paths, trajectory = refined(
                 *(paths, clear, solve_one, timed),
-                lambda sent: dense_check(self.model, sent, scene, around, floor=floor),
-                names,
+                lambda sent: dense_check(self.model, sent, scene, self.obstacles, floor=floor),
+                frozenset(item.name for item in self.obstacles),
             )
         else:
             trajectory = timed(paths)

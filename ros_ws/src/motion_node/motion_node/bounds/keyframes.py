@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..constraints import Clearances
-from ..errors import KEYFRAMES
+from ..errors import KEYFRAMES, InfeasibleError
 from ..phases import Phase
 from ..robots.inverse_kinematics import InverseKinematics
 from .pose import Poses
@@ -28,7 +28,7 @@ class Keyframes:
         """``obstacles``: whether there is more around than blocks."""
         self.problems = problems
         self._poses = Poses(problems, inverse)
-        self._among = PosesAmongObstacles(problems, inverse) if obstacles else None
+        self._among, self._obstacles = PosesAmongObstacles(problems, inverse), obstacles
 
     def solve(self, start: Array, phases: Sequence[Phase], clear: Clearances) -> Array:
         """Configurations at the switches of all phases but the way home, shape (k, n) [rad].
@@ -44,12 +44,18 @@ class Keyframes:
         if not phases:
             return np.zeros((0, self.problems.model.dimension))
         demands = self.problems.demands(phases, clear)
-        if self._among is not None:
+        if self._obstacles:
             poses = self._among.solve_all(phases, clear)
             solution = self.problems.solve(start, poses, demands, thorough=False)
-            # No constraint reaches from switch to switch: the poses are a solution, if not the best.
+            # No constraint reaches from switch to switch: the poses are a solution, too.
             return solution.x[1:-1] if solution.feasible else np.array(poses)
-        poses = self._poses.solve(phases, demands)
+        try:
+            poses = self._poses.solve(phases, demands)
+        except InfeasibleError as error:
+            for phase in phases:
+                if (phase.move, phase.kind) == (error.move, error.phase):
+                    error.excludes = self._among.excludes(phase, clear)
+            raise
         solution = self.problems.solve(start, poses, demands)
         if solution.feasible:
             return solution.x[1:-1]

@@ -47,6 +47,9 @@ class PathProblem:
         acceleration: acceleration limits, shape (n,) [rad/s²]; they weigh the joints.
         phases: number of phases solved at once, between given switches.
         obstacles: around which starting points lead.
+
+    Attributes:
+        obstacles: may be changed.
     """
 
     def __init__(
@@ -62,7 +65,7 @@ class PathProblem:
         obstacles: Sequence[Obstacle] = (),
     ) -> None:
         self._model, self._inverse, self._settings = model, inverse, settings
-        self._obstacles = tuple(obstacles)
+        self.obstacles = tuple(obstacles)
         intervals = settings.steps
         weights = (np.median(acceleration) / acceleration) ** 2 * intervals**3 / 10.0
         steps = phases * intervals + 1
@@ -124,7 +127,7 @@ class PathProblem:
         self, ways: Sequence[Way], demands: Sequence[Demand]
     ) -> Iterator[tuple[Array, bool]]:
         """Starting points in the order in which they are tried, and how thoroughly."""
-        if not self._obstacles:
+        if not self.obstacles:
             for higher, inwards in _TRIES:
                 yield _joined([way.guess(self._inverse, higher, inwards) for way in ways]), True
             return
@@ -132,7 +135,7 @@ class PathProblem:
         hopeful = self._missed(straight, demands) < _HOPEFUL
         if hopeful:
             yield straight, False
-        around = [way.guesses_round(self._inverse, self._obstacles, _ROUND) for way in ways]
+        around = [way.guesses_round(self._inverse, self.obstacles, _ROUND) for way in ways]
         for guesses in zip(*around):
             yield _joined(guesses), False
         if not hopeful:

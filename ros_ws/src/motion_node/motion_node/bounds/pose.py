@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import POSE, InfeasibleError
+from ..errors import POSE, TAKING, InfeasibleError
 from ..nlp import Demand
 from ..phases import PICK, Phase
 from ..robots.inverse_kinematics import InverseKinematics
@@ -46,6 +46,7 @@ def check_widths(phases: Sequence[Phase], max_width: float) -> None:
                 violation=phase.grasp.width - max_width,
                 move=phase.move,
                 phase=phase.kind,
+                excludes=TAKING,
             )
 
 

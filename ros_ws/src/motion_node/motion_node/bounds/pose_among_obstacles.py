@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import Column
-from ..constraints import AtSwitch, Clearances
+from ..constraints import Clearances
 from ..errors import POSE, PUTTING, SCENE, TAKING, InfeasibleError
 from ..nlp import Demand
 from ..phases import PICK, Phase
@@ -48,6 +48,11 @@ class PosesAmongObstacles(Poses):
                 raise self._verdict(phase, own, here, clear)
             found.append(q)
         return found
+
+    def excludes(self, phase: Phase, clear: Clearances) -> str:
+        """How much is excluded where P1 was found to have no solution for a phase."""
+        demands = self._problems.demands([phase], clear)
+        return self._verdict(phase, self._guesses([phase], demands)[0], demands, clear).excludes
 
     def _try(self, guesses: Sequence[Guess], demands: Sequence[Demand]) -> Array | None:
         if guesses[0].score == 0.0:

@@ -99,7 +99,7 @@ class HandGrid:
         self._free, self._ends = free, ends
 
     def ways(self, count: int) -> Iterator[Array]:
-        """Up to ``count`` ways, the shortest first, each of shape (points, 3) [m], ends included."""
+        """Up to ``count`` ways, shortest first, ends included, each of shape (points, 3) [m]."""
         if not self._free.any():
             return
         weight = np.ones(len(self._points))

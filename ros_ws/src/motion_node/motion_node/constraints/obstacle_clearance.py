@@ -52,18 +52,23 @@ class ObstacleClearance(Constraint):
     name = "obstacle_clearance"
 
     def __init__(self, arm: Arm, obstacles: Sequence[Obstacle], capacity: int) -> None:
-        self._arm, self._obstacles, self._capacity = arm, tuple(obstacles), capacity
-        self._parameters = obstacle_parameters(obstacles, capacity)
+        self._arm, self.capacity = arm, capacity
+        self.surround(obstacles)
         self._spheres = (*arm.bodies, *arm.upper_bodies)
         self._bodies = list(dict.fromkeys(body.name for body in self._spheres))
 
+    def surround(self, obstacles: Sequence[Obstacle]) -> None:
+        """Other obstacles, at most ``capacity``, from now on."""
+        self._obstacles = tuple(obstacles)
+        self._parameters = obstacle_parameters(obstacles, self.capacity)
+
     def parameter_count(self, stacks: int) -> int:
         """See :class:`Constraint`."""
-        return OBSTACLE_SIZE * self._capacity + _TOOL_SIZE + 1
+        return OBSTACLE_SIZE * self.capacity + _TOOL_SIZE + 1
 
     def expression(self, model: ArmModel, parameters: ca.SX, stacks: int) -> ca.SX:
         """See the class."""
-        ends = np.cumsum([0, OBSTACLE_SIZE * self._capacity, _TOOL_SIZE, 1]).tolist()
+        ends = np.cumsum([0, OBSTACLE_SIZE * self.capacity, _TOOL_SIZE, 1]).tolist()
         listed, tool, margin = ca.vertsplit(parameters, ends)
         gripper = self._arm.gripper
         palm = HandPart(model, gripper.hand_half, ca.SX(gripper.hand_top), ca.SX(gripper.palm))
@@ -87,7 +92,7 @@ class ObstacleClearance(Constraint):
         held = phase.tool.held
         parts = ["hand", f"fingers with {held}" if held else "fingers", *self._bodies]
         names = [item.name for item in self._obstacles]
-        names += ["nothing"] * (self._capacity - len(names))
+        names += ["nothing"] * (self.capacity - len(names))
         return [f"clearance of {part} to {name}" for name in names for part in parts]
 
     def at_switch(self, moment: AtSwitch) -> Demand:
@@ -107,5 +112,5 @@ class ObstacleClearance(Constraint):
     def _demand(self, phase: Phase, margin: float, steps: int) -> Demand:
         tool = phase.tool
         own = [*self._parameters, tool.half_x, tool.half_y, tool.bottom, margin]
-        lower = np.zeros((steps, self._capacity * (2 + len(self._bodies))))
+        lower = np.zeros((steps, self.capacity * (2 + len(self._bodies))))
         return Demand(np.repeat([own], steps, axis=0), lower, np.full_like(lower, np.inf))

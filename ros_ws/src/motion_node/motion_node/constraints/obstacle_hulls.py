@@ -96,9 +96,7 @@ class HandPart:
             gaps.append(smooth_abs(ca.dot(axis, delta)) - reach - extent)
         for column in (0, 1):
             axis = self._rotation[:, column]
-            gaps.append(
-                smooth_abs(ca.dot(axis, delta)) - obstacle.reach(axis) - self._half[column]
-            )
+            gaps.append(smooth_abs(ca.dot(axis, delta)) - obstacle.reach(axis) - self._half[column])
         return _largest(gaps)
 
 
