@@ -101,14 +101,14 @@ class MotionPlanner:
         self.inverse = InverseKinematics(self.model)
         chosen = default_constraints(arm) if constraints is None else constraints
         self.obstacles = tuple(obstacles)
-        self._shape, self._among = self.settings.path, None
+        self._shape = self.settings.path
+        self._among: ObstacleClearance | None = None
         if obstacles:
             # Steps so near to one another that no wall fits in between.
             between = self._shape.steps - 2 * self._shape.vertical
             self._shape = replace(self._shape, steps=self._shape.steps + between)
-            among = ObstacleClearance(arm, obstacles, capacity_for(len(obstacles)))
-            self._among = among
-            chosen = (*chosen, among)
+            self._among = ObstacleClearance(arm, obstacles, capacity_for(len(obstacles)))
+            chosen = (*chosen, self._among)
         self.constraints = tuple(chosen)
         self.limits = JointLimits(self.model.kinematics.velocity, np.array(arm.acceleration))
         self.timing = self.settings.timing
