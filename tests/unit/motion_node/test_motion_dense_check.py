@@ -15,9 +15,9 @@ from obstacle_scenes import WIDE, wall
 
 from motion_node.blocks import read_scene
 from motion_node.constraints import Clearances
-from motion_node.dense_check import TOUCH, Checked, check
+from motion_node.dense_check import Checked, check
 from motion_node.errors import InfeasibleError
-from motion_node.hull_distances import MovingBox, MovingSphere, Upright
+from motion_node.hull_distances import MovingBox, MovingSpheres, Upright
 from motion_node.obstacles import Obstacle
 from motion_node.phases import PhasePath
 from motion_node.planner import MotionPlanner
@@ -74,7 +74,7 @@ def test_gaps_are_never_more_than_bullets_distances(seed: int, rounded: bool) ->
             ),
             -1, position, physicsClientId=client,
         )  # fmt: skip
-        sphere = float(MovingSphere(position[None], radius).gaps(still)[0, 0])
+        sphere = float(MovingSpheres(position[None, None], np.array([radius])).gaps(still)[0, 0, 0])
         outside = bullet_gap(ball, body, client)
         assert sphere <= outside + 1e-3
         if outside > 0:
@@ -90,7 +90,7 @@ def test_motions_without_obstacles_pass(planner: MotionPlanner, seed: int) -> No
     motion = planner.solve(graph, random_moves(graph, 3, rng), planner.model.home, OPEN)
     checked = check(planner.model, motion.trajectory, read_scene(graph), ())
     assert checked.contacts == ()
-    assert checked.least <= TOUCH  # a block is let go where it comes to stand
+    assert abs(checked.least) < 2e-3  # a block leaves what it stands on
 
 
 def test_a_wall_in_the_way_is_found_and_named(planner: MotionPlanner) -> None:

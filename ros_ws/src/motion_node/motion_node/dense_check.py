@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .blocks import ROUND, Block, Scene
-from .hull_distances import MovingBox, MovingSphere, Upright
+from .hull_distances import MovingBox, MovingSpheres, Upright
 from .obstacles import Obstacle
 from .phases import PICK, Phase
 from .robots.model import ArmModel
@@ -26,16 +26,12 @@ from .timing.trajectory import Interval, Trajectory
 Array = NDArray[np.float64]
 
 TABLE: Final = "the table"
-#: What may touch overlaps by less, as blocks were seen [m].
-TOUCH: Final = 0.003
 #: Moments of a way that are looked at first.
 MOMENTS: Final = 24
 #: Stretches are halved so often; bodies move by a millimetre or so in the shortest.
 HALVINGS: Final = 6
-#: Within so much of a switch the hand is on its vertical line [m].
-_ON_LINE: Final = 0.004
-#: What is nearer at the start than it may be comes no nearer than this [m].
-_START: Final = 0.002
+#: What is nearer than it may be where a way ends comes no nearer than this in between [m].
+_MEANT: Final = 0.002
 
 
 @dataclass(frozen=True)
@@ -86,7 +82,7 @@ def check(
     """
     blocks = {block.name: block for stack in (scene.stacks if scene else ()) for block in stack}
     around = _uprights(obstacles)
-    least, contacts = np.inf, []
+    least, contacts = np.inf, list[Contact]()
     hold: tuple[Block, Array, Array] | None = None
     for interval in trajectory.intervals:
         phase = interval.phase
@@ -107,7 +103,7 @@ def check(
                 hold = None
             continue
         others = _joined(_upright_blocks(list(blocks.values())), around)
-        way = _WayCheck(model, trajectory, interval, others, floor, hold, len(blocks))
+        way = _WayCheck(model, trajectory, interval, others, floor, hold, {*blocks, TABLE})
         found, contact = way.run(clearance)
         least = min(least, found)
         if contact is not None:
@@ -126,7 +122,7 @@ class _WayCheck:
         others: Upright,
         floor: float,
         hold: tuple[Block, Array, Array] | None,
-        blocks: int,
+        blocks: set[str],
     ) -> None:
         self._model, self._trajectory, self._interval = model, trajectory, interval
         self._others, self._floor, self._hold, self._blocks = others, floor, hold, blocks
@@ -136,8 +132,12 @@ class _WayCheck:
         times = np.linspace(self._interval.start, self._interval.end, MOMENTS)
         gaps, moves, names = self._look(times)
         free = np.full(gaps.shape[1], clearance)
+        # What stands on something touches it at a switch; blocks are not where they were seen.
+        meant = np.array([name in self._blocks for _, name in names])
+        nearest = np.minimum(gaps[0], gaps[-1]) - _MEANT
+        free = np.where(meant, np.minimum(free, nearest), free)
         if self._interval.phase.start is None:
-            free = np.minimum(free, gaps[0] - _START)
+            free = np.minimum(free, gaps[0] - _MEANT)
         least, contact = np.inf, None
         starts, ends = times[:-1], times[1:]
         first, second = gaps[:-1], gaps[1:]
@@ -199,9 +199,7 @@ class _WayCheck:
             return MovingBox(rotation, origin + rotation @ middle, half)
 
         x, y = gripper.hand_half
-        bodies: list[tuple[str, MovingBox | MovingSphere]] = [
-            ("hand", box((-x, -y, gripper.hand_top), (x, y, gripper.palm)))
-        ]
+        boxes = [("hand", box((-x, -y, gripper.hand_top), (x, y, gripper.palm)))]
         thick, depth = gripper.finger_thickness, gripper.finger_depth
         half = np.array([thick, depth / 2, (gripper.finger_tip - gripper.palm) / 2])
         for side, finger in ((1.0, positions.fingers[:, 0]), (-1.0, positions.fingers[:, 1])):
@@ -209,41 +207,36 @@ class _WayCheck:
                 [0 * finger, side * (finger + depth / 2), 0 * finger + gripper.palm + half[2]]
             )
             center = origin + np.einsum("kij,kj->ki", rotation, middle)
-            bodies.append(("fingers", MovingBox(rotation, center, half)))
+            boxes.append(("fingers", MovingBox(rotation, center, half)))
         if self._hold is not None:
             block, turn, offset = self._hold
-            size = np.array(block.size) / 2
-            bodies.append(
-                (block.name, MovingBox(rotation @ turn, origin + rotation @ offset, size))
-            )
-        for ball in (*arm.bodies, *arm.upper_bodies):
-            pose = poses[ball.link]
-            center = pose[:, :3, 3] + pose[:, :3, :3] @ np.array(ball.center)
-            bodies.append((ball.name, MovingSphere(center, ball.radius)))
-        gaps, moves, names = [], [], []
-        joints = _joint_axes(self._model, poses)
-        touching = self._on_line(origin + rotation[:, :, 2] * gripper.tcp_offset)
-        for name, body in bodies:
-            own = body.gaps(self._others)
-            table = body.above(self._floor)[:, None]
-            if self._hold is not None and name == self._hold[0].name:
-                # It leaves what it stood on, and comes to what it will stand on.
-                own[:, : self._blocks] += TOUCH * touching[:, None]
-                table = table + TOUCH * touching[:, None]
-            speed = _speed(joints, np.abs(rates.arm), body.center, body.radius)
-            gaps += [own, table]
-            moves.append(np.repeat(speed[:, None], own.shape[1] + 1, axis=1))
-            names += [(name, other) for other in (*self._others.names, TABLE)]
-        return np.hstack(gaps), np.hstack(moves), names
-
-    def _on_line(self, tool: Array) -> NDArray[np.bool_]:
-        """Whether the hand is on the vertical line of a switch, (k,)."""
-        phase, near = self._interval.phase, np.zeros(len(tool), dtype=bool)
-        for switch in (phase.start, phase.switch):
-            if switch is not None:
-                aside = np.linalg.norm(tool[:, :2] - switch.position_world[:2], axis=1)
-                near |= (aside < _ON_LINE) & (tool[:, 2] < switch.position_world[2] + 0.05)
-        return near
+            held = MovingBox(rotation @ turn, origin + rotation @ offset, np.array(block.size) / 2)
+            boxes.append((block.name, held))
+        balls = (*arm.bodies, *arm.upper_bodies)
+        centers = [
+            poses[ball.link][:, :3, 3] + poses[ball.link][:, :3, :3] @ np.array(ball.center)
+            for ball in balls
+        ]
+        spheres = MovingSpheres(np.stack(centers, axis=1), np.array([b.radius for b in balls]))
+        # (k, bodies, others), the table last.
+        gaps = np.concatenate(
+            [np.stack([body.gaps(self._others) for _, body in boxes], axis=1),
+             spheres.gaps(self._others)], axis=1,
+        )  # fmt: skip
+        table = np.column_stack(
+            [*[body.above(self._floor) for _, body in boxes], spheres.above(self._floor)]
+        )
+        gaps = np.concatenate([gaps, table[:, :, None]], axis=2)
+        middles = np.concatenate(
+            [np.stack([body.center for _, body in boxes], axis=1), spheres.center], axis=1
+        )
+        radii = np.append([body.radius for _, body in boxes], spheres.radius)
+        speed = _speed(_joint_axes(self._model, poses), np.abs(rates.arm), middles, radii)
+        count = len(times)
+        names = [name for name, _ in boxes] + [ball.name for ball in balls]
+        pairs = [(name, other) for name in names for other in (*self._others.names, TABLE)]
+        moving = np.repeat(speed, gaps.shape[2], axis=1)
+        return gaps.reshape(count, -1), moving, pairs
 
 
 def _hand(model: ArmModel, q: Array) -> Array:
@@ -285,11 +278,15 @@ def _joint_axes(model: ArmModel, poses: dict[str, Array]) -> tuple[Array, Array]
     return np.stack(directions, axis=1), np.stack(points, axis=1)
 
 
-def _speed(joints: tuple[Array, Array], rates: Array, center: Array, radius: float) -> Array:
-    """No point of a body is faster, shape (k,) [m/s]; a tenth is added for what happens between."""
+def _speed(joints: tuple[Array, Array], rates: Array, centers: Array, radii: Array) -> Array:
+    """No point of a body is faster, shape (k, bodies) [m/s].
+
+    A tenth is added for what happens between two moments.
+    """
     directions, points = joints
-    arms = np.linalg.norm(np.cross(directions, center[:, None] - points), axis=2) + radius
-    return np.asarray(1.1 * (rates * arms).sum(axis=1) + 1e-3)
+    arms = np.cross(directions[:, None], centers[:, :, None] - points[:, None])
+    reach = np.sqrt((arms**2).sum(axis=3)) + radii[:, None]
+    return np.asarray(1.1 * np.einsum("kj,kbj->kb", rates, reach) + 1e-3)
 
 
 def _rotation(yaw: float) -> Array:

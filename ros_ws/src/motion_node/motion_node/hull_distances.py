@@ -110,24 +110,29 @@ class MovingBox:
 
 
 @dataclass(frozen=True)
-class MovingSphere:
-    """A sphere at k moments: centres (k, 3) and radius [m]."""
+class MovingSpheres:
+    """Spheres at k moments.
+
+    Attributes:
+        center: shape (k, s, 3) [m].
+        radius: shape (s,) [m].
+    """
 
     center: Array
-    radius: float
+    radius: Array
 
     def above(self, height: float) -> Array:
-        """Of its lowest point above a height, shape (k,) [m]."""
-        return np.asarray(self.center[:, 2] - self.radius - height)
+        """Of their lowest points above a height, shape (k, s) [m]."""
+        return np.asarray(self.center[..., 2] - self.radius - height)
 
     def gaps(self, others: Upright) -> Array:
-        """To each of m bodies, shape (k, m) [m]."""
-        delta = self.center[:, None] - others.center
-        own = np.abs(np.einsum("mij,kmj->kmi", others.axes, delta)) - others.half
+        """To each of m bodies, shape (k, s, m) [m]."""
+        delta = self.center[:, :, None] - others.center
+        own = np.abs(np.einsum("mij,ksmj->ksmi", others.axes, delta)) - others.half
         around = np.hypot(delta[..., 0], delta[..., 1]) - others.half[:, 0]
         beside = np.hypot(np.maximum(own[..., 0], 0), np.maximum(own[..., 1], 0))
         beside = np.where(others.round, np.maximum(around, 0), beside)
         inside = np.where(others.round, around, np.maximum(own[..., 0], own[..., 1]))
         outside = np.hypot(beside, np.maximum(own[..., 2], 0))
         within = np.minimum(np.maximum(inside, own[..., 2]), 0)
-        return np.asarray(outside + within - self.radius)
+        return np.asarray(outside + within - self.radius[:, None])
