@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-planner bench-sim results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-planner bench-sim results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -67,6 +67,9 @@ bench-sim: setup  ## time of pictures and of the whole graph, pictures against t
 
 bench-motion: setup  ## time to find motions, and how long they take; PEERS=venv with robotic and toppra QUICK=1
 	@$(RUN) python benchmarks/bench_motion.py $(if $(PEERS),--peers "$(PEERS)")
+
+bench-obstacles: setup  ## goals among walls, narrow places and places out of reach; QUICK=1
+	@$(RUN) python benchmarks/bench_obstacles.py
 
 bench-planner: setup  ## search times, lengths and bounds; FD=venv with up-fast-downward QUICK=1
 	@$(RUN) python benchmarks/bench_planner.py $(if $(FD),--fd "$(FD)")

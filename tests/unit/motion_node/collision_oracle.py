@@ -15,6 +15,7 @@ import pybullet
 import pybullet_data
 from numpy.typing import NDArray
 
+from motion_node.obstacles import Obstacle
 from motion_node.phases import PICK, PLACE
 from motion_node.planner import Motion
 from motion_node.robots import PANDA
@@ -53,7 +54,7 @@ class Replay:
 class CollisionOracle:
     """One robot, a table and the blocks of a scene, without dynamics."""
 
-    def __init__(self, graph: SceneGraph) -> None:
+    def __init__(self, graph: SceneGraph, obstacles: Sequence[Obstacle] = ()) -> None:
         self.client = pybullet.connect(pybullet.DIRECT)
         path = f"{pybullet_data.getDataPath()}/franka_panda/panda.urdf"
         self.robot = pybullet.loadURDF(path, useFixedBase=True, physicsClientId=self.client)
@@ -70,6 +71,7 @@ class CollisionOracle:
             item.name: self._box(item.size, item.position_world, item.quaternion_world)
             for item in graph.objects
         }
+        self.obstacles = {item.name: self._obstacle(item) for item in obstacles}
         self.stacks = graph.stacks()
         self.held: tuple[str, Array, Array] | None = None
 
@@ -87,6 +89,22 @@ class CollisionOracle:
         return int(
             pybullet.createMultiBody(
                 0.0, shape, -1, position, quaternion, physicsClientId=self.client
+            )
+        )
+
+    def _obstacle(self, item: Obstacle) -> int:
+        turn = (0.0, 0.0, float(np.sin(item.yaw / 2)), float(np.cos(item.yaw / 2)))
+        if not item.round:
+            return self._box(item.size, item.position_world, turn)
+        shape = pybullet.createCollisionShape(
+            pybullet.GEOM_CYLINDER,
+            radius=item.size[0] / 2,
+            height=item.size[2],
+            physicsClientId=self.client,
+        )
+        return int(
+            pybullet.createMultiBody(
+                0.0, shape, -1, item.position_world, turn, physicsClientId=self.client
             )
         )
 
@@ -151,11 +169,26 @@ class CollisionOracle:
         held = self.held[0] if self.held else ""
         robot = carried = Nearest(FAR, "", time)
         others = [(name, body) for name, body in self.blocks.items() if name != held]
+        others += self.obstacles.items()
         for name, body in [*others, ("table", self.table)]:
             robot = self._robot_to(body, name, robot)
             if held:
                 carried = self._pair(self.blocks[held], body, f"{held} to {name}", carried)
         return robot, carried
+
+    def distance(self, links: Sequence[str], obstacle: str) -> float:
+        """Of some of the robot's links to an obstacle [m]."""
+        return min(
+            point[8]
+            for link in links
+            for point in pybullet.getClosestPoints(
+                self.robot,
+                self.obstacles[obstacle],
+                3.0,
+                linkIndexA=self.links[link],
+                physicsClientId=self.client,
+            )
+        )
 
     def _pair(self, body: int, other: int, what: str, found: Nearest) -> Nearest:
         for point in pybullet.getClosestPoints(body, other, FAR, physicsClientId=self.client):
@@ -199,6 +232,7 @@ def replay(
     place_gap: float,
     vertical: float,
     step: float = 0.04,
+    obstacles: Sequence[Obstacle] = (),
 ) -> Replay:
     """Carries a plan out without dynamics and looks how near things come.
 
@@ -206,8 +240,9 @@ def replay(
         place_gap: height from which blocks are let go [m].
         vertical: a held block may touch what it stands on within this height above a switch [m].
         step: between looks [s].
+        obstacles: what stands around besides.
     """
-    oracle = CollisionOracle(graph)
+    oracle = CollisionOracle(graph, obstacles)
     trajectory = motion.trajectory
     free = support = Nearest(FAR, "", 0.0)
     half = graph.objects[0].size[0] / 2

@@ -10,6 +10,13 @@ POSE: Final = "pose"
 KEYFRAMES: Final = "keyframes"
 PATH: Final = "path"
 
+#: What of a move cannot be, as MotionStatus spells it: taking the block from where it stands,
+#: putting it there, both in one move, each wherever the others are, or the move in this scene.
+TAKING: Final = "taking"
+PUTTING: Final = "putting"
+MOVING: Final = "moving"
+SCENE: Final = "scene"
+
 
 class MotionError(Exception):
     """Base class of everything that can go wrong between a plan and a trajectory."""
@@ -42,6 +49,7 @@ class InfeasibleError(MotionError):
         violation: by how much [m or rad].
         move: index of the move; the number of moves for the way home.
         phase: ``pick``, ``place`` or ``home``.
+        excludes: ``taking``, ``putting``, ``moving`` or ``scene``; empty: nobody has found out.
     """
 
     def __init__(
@@ -53,8 +61,10 @@ class InfeasibleError(MotionError):
         violation: float = 0.0,
         move: int = 0,
         phase: str = "",
+        excludes: str = "",
     ) -> None:
         self.bound = bound
+        self.excludes = excludes
         self.object_name = object_name
         self.constraint = constraint
         self.violation = violation

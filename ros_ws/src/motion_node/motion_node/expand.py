@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -13,10 +13,23 @@ from scene_graph import Move, Place, base_name, wrap_line
 
 from .blocks import Block, Column, Scene, placed
 from .errors import InvalidPlanError
-from .grasps import Circumstances, Grasp, choose_grasp
+from .grasps import Circumstances, Grasp, choose_grasp, grasps_for
 from .phases import HOME, PICK, PLACE, Phase, Switch, Tool
 from .robots import Gripper
 from .settings import PhaseSettings
+
+
+@dataclass(frozen=True)
+class Choice:
+    """How a move takes its block and puts it down.
+
+    Attributes:
+        grasp: which of the ways to take it, from 0, the preferred one.
+        across: whether it is put down with the fingers along world y, not x.
+    """
+
+    grasp: int = 0
+    across: bool = False
 
 
 def open_tool(gripper: Gripper) -> Tool:
@@ -47,6 +60,7 @@ def expand(
     settings: PhaseSettings,
     squeeze: float,
     object_names: Sequence[str] = (),
+    choices: Sequence[Choice] = (),
 ) -> list[Phase]:
     """The phases of a plan, the way home included: a^r_{1:K} = p(a^v_{1:K^v}) of 5.1.
 
@@ -54,6 +68,7 @@ def expand(
         squeeze: how much farther than the block's half width each finger is sent, so that the
             fingers press [m].
         object_names: the blocks that the plan believes it moves; checked where given.
+        choices: one a move; none: the preferred ones.
 
     Raises:
         InvalidPlanError: if a move does not fit the scene; ``move`` is its index.
@@ -64,26 +79,54 @@ def expand(
         block = _taken(scene, index, move, object_names[index] if object_names else "")
         source, target = move.source, move.target
         circumstances = Circumstances(gripper, free_yaw(scene.places, source))
-        grasp = choose_grasp(block, circumstances, settings.max_grasp_width)
+        choice = choices[index] if choices else Choice()
+        grasps = grasps_for(block, circumstances, settings.max_grasp_width)
+        grasp, count = grasps[min(choice.grasp, len(grasps) - 1)], len(grasps)
         tool, holding = open_tool(gripper), _holding_tool(gripper, block, grasp, squeeze)
         x, y, z = block.position_world
         pick = Switch((x, y, z + grasp.height), grasp.yaw, source)
         phases.append(
-            Phase(PICK, index, block.name, pick, start, tool, scene.columns, holding.finger, grasp)
+            Phase(
+                *(PICK, index, block.name, pick, start, tool, scene.columns, holding.finger),
+                *(grasp, count),
+            )
         )
         scene = scene.without_top(source)
         support = scene.stacks[target][-1] if scene.stacks[target] else None
         base = scene.places[target].position_world
-        after = placed(block, grasp.placed_yaw, base, support, settings.max_overhang)
+        turn = np.pi / 2 if choice.across else 0.0
+        yaw = wrap_line(grasp.placed_yaw + turn) if choice.across else grasp.placed_yaw
+        after = placed(block, yaw, base, support, settings.max_overhang)
         x, y, z = after.position_world
-        start = Switch((x, y, z + grasp.height + settings.place_gap), 0.0, target)
+        start = Switch((x, y, z + grasp.height + settings.place_gap), turn, target)
         travel = gripper.finger_travel
         phases.append(
-            Phase(PLACE, index, block.name, start, pick, holding, scene.columns, travel, grasp)
+            Phase(
+                *(PLACE, index, block.name, start, pick, holding, scene.columns, travel),
+                *(grasp, count),
+            )
         )
         scene = scene.with_top(target, after)
     tool, travel = open_tool(gripper), gripper.finger_travel
     return [*phases, Phase(HOME, len(moves), "", None, start, tool, scene.columns, travel)]
+
+
+def only_for(
+    scene: Scene, moves: Sequence[Move], index: int, gripper: Gripper, settings: PhaseSettings
+) -> Scene:
+    """The scene before a move of a plan, with no other stacks than the move's two."""
+    for move in moves[:index]:
+        block = scene.stacks[move.source][-1]
+        circumstances = Circumstances(gripper, free_yaw(scene.places, move.source))
+        grasp = choose_grasp(block, circumstances, settings.max_grasp_width)
+        scene = scene.without_top(move.source)
+        support = scene.stacks[move.target][-1] if scene.stacks[move.target] else None
+        base = scene.places[move.target].position_world
+        after = placed(block, grasp.placed_yaw, base, support, settings.max_overhang)
+        scene = scene.with_top(move.target, after)
+    own = (moves[index].source, moves[index].target)
+    stacks = tuple(stack if place in own else () for place, stack in enumerate(scene.stacks))
+    return replace(scene, stacks=stacks)
 
 
 def _taken(scene: Scene, index: int, move: Move, expected: str) -> Block:

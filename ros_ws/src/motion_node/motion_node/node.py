@@ -33,6 +33,7 @@ from .execution.executive import Executive
 from .execution.follow import Follower
 from .execution.settings import ExecutionSettings
 from .execution.worker import PlanWorker
+from .obstacles import read_obstacles
 from .parameters import (
     PARAMETERS,
     chosen_arm,
@@ -75,6 +76,7 @@ class MotionNode(Node):
         super().__init__("motion_node", **kwargs)
         self._values = declare_parameters(self, PARAMETERS, self._parameters_changed)
         self._arm = chosen_arm(self._values)
+        self._obstacles = read_obstacles(self._values["obstacles"])
         self._states = ArmStateBox()
         self._planner: MotionPlanner | None = None
         self._description = ""
@@ -155,7 +157,12 @@ class MotionNode(Node):
             return
         self._description = message.data
         try:
-            planner = MotionPlanner(message.data, self._arm, planner_settings(self._values))
+            planner = MotionPlanner(
+                message.data,
+                self._arm,
+                planner_settings(self._values),
+                obstacles=self._obstacles,
+            )
             planner.prepare(PREPARED_STACKS)
         except MotionError as error:
             self.get_logger().error(f"robot_description cannot be used: {error}")

@@ -12,6 +12,7 @@ from tamp_runtime.parameters import ParameterSpec
 from .execution.monitor import MonitorSettings
 from .execution.settings import ExecutionSettings
 from .nlp import SOLVERS
+from .obstacles import ObstacleError, read_obstacles
 from .robots import ARMS, PANDA, Arm
 from .settings import PathSettings, PhaseSettings, Settings
 from .timing.time_paths import TimingSettings
@@ -38,6 +39,15 @@ def _solver_problem(name: str) -> str:
     return "" if name in SOLVERS else f"solver = {name!r} is not a known solver; known: {known}"
 
 
+def _obstacles_problem(path: str) -> str:
+    """a YAML file with a list `obstacles` as in sim_node's scenes, or empty"""
+    try:
+        read_obstacles(path)
+    except ObstacleError as error:
+        return f"obstacles: {error}"
+    return ""
+
+
 PARAMETERS = (
     ParameterSpec("robot", PANDA.name, "Which arm moves.", read_only=True, check=_robot_problem),
     ParameterSpec(
@@ -46,6 +56,13 @@ PARAMETERS = (
         "What solves the motion problems.",
         read_only=True,
         check=_solver_problem,
+    ),
+    ParameterSpec(
+        "obstacles",
+        "",
+        "File that says what stands around besides blocks; the arm and what it holds keep away.",
+        read_only=True,
+        check=_obstacles_problem,
     ),
     _spec(
         "velocity_scale",

@@ -68,6 +68,7 @@ class Phase:
         columns: the stacks on the way, a held block left out.
         grip: finger position commanded after the switch [m].
         grasp: how the block is taken; None for ``home``.
+        grasps: how many ways to take it there are.
     """
 
     kind: str
@@ -79,6 +80,7 @@ class Phase:
     columns: tuple[Column, ...]
     grip: float
     grasp: Grasp | None = None
+    grasps: int = 1
 
 
 @dataclass(frozen=True)

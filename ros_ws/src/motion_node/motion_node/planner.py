@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -13,13 +14,33 @@ from numpy.typing import NDArray
 
 from scene_graph import Move, SceneGraph
 
-from .blocks import read_scene
+from .blocks import Scene, read_scene
 from .bounds import Keyframes, PathProblem, SwitchProblems, check_widths
-from .constraints import Clearances, Constraint, default_constraints
+from .choosing import solve_choosing
+from .constraints import (
+    Clearances,
+    Constraint,
+    ObstacleClearance,
+    capacity_for,
+    default_constraints,
+)
+from .dense_check import check as dense_check
 from .errors import PATH, CancelledError, InfeasibleError
-from .expand import expand, open_tool, put_down, rise_home, something_held, way_home
+from .expand import (
+    Choice,
+    expand,
+    only_for,
+    open_tool,
+    put_down,
+    rise_home,
+    something_held,
+    way_home,
+)
+from .motion import Motion
 from .nlp import SOLVERS
+from .obstacles import Obstacle
 from .phases import HOME, PLACE, Phase, PhasePath
+from .refining import refined
 from .robots import PANDA, Arm
 from .robots.inverse_kinematics import InverseKinematics
 from .robots.model import ArmModel
@@ -27,6 +48,8 @@ from .settings import Settings
 from .timing.fastest import JointLimits
 from .timing.time_paths import time_paths
 from .timing.trajectory import Trajectory
+
+__all__ = ["Motion", "MotionPlanner"]
 
 Array = NDArray[np.float64]
 
@@ -38,25 +61,6 @@ TALLEST: Final = 0.35
 SPARE_RISE: Final = 0.03
 
 
-@dataclass(frozen=True)
-class Motion:
-    """A plan as a motion.
-
-    Attributes:
-        phases: the phases in order, the way home last.
-        paths: their paths.
-        trajectory: the paths in time.
-        floor: height of the table [m].
-        seconds: wall time that finding it took [s].
-    """
-
-    phases: tuple[Phase, ...]
-    paths: tuple[PhasePath, ...]
-    trajectory: Trajectory
-    floor: float
-    seconds: float
-
-
 class MotionPlanner:
     """The motion problem of 5.1 for one arm; usable without ROS.
 
@@ -66,6 +70,7 @@ class MotionPlanner:
     Args:
         description: the URDF's text.
         constraints: what motions have to keep to; :func:`default_constraints` if not given.
+        obstacles: what stands around besides blocks.
 
     Attributes:
         model: the arm with its URDF.
@@ -83,6 +88,7 @@ class MotionPlanner:
         arm: Arm = PANDA,
         settings: Settings | None = None,
         constraints: Sequence[Constraint] | None = None,
+        obstacles: Sequence[Obstacle] = (),
     ) -> None:
         self.arm = arm
         self.settings = settings or Settings()
@@ -94,6 +100,15 @@ class MotionPlanner:
         self.model = ArmModel(description, arm, self.settings.limit_margin)
         self.inverse = InverseKinematics(self.model)
         chosen = default_constraints(arm) if constraints is None else constraints
+        self.obstacles = tuple(obstacles)
+        self._shape = self.settings.path
+        self._among: ObstacleClearance | None = None
+        if obstacles:
+            # Steps so near to one another that no wall fits in between.
+            between = self._shape.steps - 2 * self._shape.vertical
+            self._shape = replace(self._shape, steps=self._shape.steps + between)
+            self._among = ObstacleClearance(arm, obstacles, capacity_for(len(obstacles)))
+            chosen = (*chosen, self._among)
         self.constraints = tuple(chosen)
         self.limits = JointLimits(self.model.kinematics.velocity, np.array(arm.acceleration))
         self.timing = self.settings.timing
@@ -104,11 +119,25 @@ class MotionPlanner:
         if stacks not in self._bounds:
             problems = SwitchProblems(self.model, stacks, self.constraints, self._solver)
             path = self.path_problem(stacks)
-            self._bounds[stacks] = (Keyframes(problems, self.inverse), path)
+            keyframes = Keyframes(problems, self.inverse, bool(self.obstacles))
+            self._bounds[stacks] = (keyframes, path)
         keyframes, path = self._bounds[stacks]
         if moves:
             keyframes.problems.problem(2 * moves)
         return keyframes, path
+
+    def surround(self, obstacles: Sequence[Obstacle]) -> None:
+        """Other obstacles from now on, for a planner that was made with as many or more.
+
+        Raises:
+            ValueError: if there are more than its problems are built for.
+        """
+        if not obstacles or self._among is None or len(obstacles) > self._among.capacity:
+            raise ValueError(f"the problems are not built for {len(obstacles)} obstacles")
+        self.obstacles = tuple(obstacles)
+        self._among.surround(obstacles)
+        for _, path in self._bounds.values():
+            path.obstacles = self.obstacles
 
     def path_problem(self, stacks: int, phases: int = 1) -> PathProblem:
         """P3 for a number of stacks, over one phase or several that are solved at once."""
@@ -118,9 +147,10 @@ class MotionPlanner:
             self.constraints,
             self.inverse,
             self.limits.acceleration,
-            self.settings.path,
+            self._shape,
             self._solver,
             phases,
+            self.obstacles,
         )
 
     def solve(
@@ -147,11 +177,25 @@ class MotionPlanner:
         """
         begin = time.perf_counter()
         scene, settings = read_scene(graph), self.settings
-        phases = expand(
-            scene, moves, self.arm.gripper, settings.phases, settings.squeeze, object_names
-        )
+        gripper = self.arm.gripper
+
+        def phases_for(
+            own: Scene, some: Sequence[Move], choices: Sequence[Choice]
+        ) -> Sequence[Phase]:
+            names = object_names if own is scene else ()
+            return expand(own, some, gripper, settings.phases, settings.squeeze, names, choices)
+
+        def solve(phases: Sequence[Phase], own: Scene, at_home: bool) -> Motion:
+            start = self.model.home if at_home else arm
+            return self._solve(phases, scene.floor, start, fingers, cancelled, begin, scene=own)
+
         try:
-            return self._solve(phases, scene.floor, arm, fingers, cancelled, begin)
+            if not self.obstacles:
+                return solve(phases_for(scene, moves, ()), scene, False)
+            return solve_choosing(
+                *(scene, moves, phases_for, solve),
+                lambda move: only_for(scene, moves, move, gripper, settings.phases),
+            )
         except InfeasibleError as error:
             if scene.aside:
                 error.add(f"in the plan's scene {scene.aside}")
@@ -226,6 +270,7 @@ class MotionPlanner:
         cancelled: Callable[[], bool] = lambda: False,
         begin: float = 0.0,
         opening: bool = True,
+        scene: Scene | None = None,
     ) -> Motion:
         def check() -> None:
             if cancelled():
@@ -237,11 +282,24 @@ class MotionPlanner:
         clear = Clearances(self.settings.path.margin, floor)
         switching = [phase for phase in phases if phase.kind != HOME]
         configurations = [arm, *keyframes.solve(arm, switching, clear), self.model.home]
-        paths: list[PhasePath] = []
-        for phase, start, goal in zip(phases, configurations, configurations[1:]):
+        ends = list(pairwise(configurations))
+
+        def solve_one(index: int, kept: Clearances) -> PhasePath:
             check()
-            paths += problem.solve([phase], [start, goal], clear)
+            return problem.solve([phases[index]], ends[index], kept)[0]
+
+        def timed(paths: Sequence[PhasePath]) -> Trajectory:
+            first = self.arm.gripper.finger_travel if opening else None
+            return time_paths(paths, self.limits, self.timing, fingers, first)
+
+        paths = [solve_one(index, clear) for index in range(len(phases))]
         check()
-        first = self.arm.gripper.finger_travel if opening else None
-        trajectory = time_paths(paths, self.limits, self.timing, fingers, first)
+        if self.obstacles:
+            paths, trajectory = refined(
+                *(paths, clear, solve_one, timed),
+                lambda sent: dense_check(self.model, sent, scene, self.obstacles, floor=floor),
+                frozenset(item.name for item in self.obstacles),
+            )
+        else:
+            trajectory = timed(paths)
         return Motion(tuple(phases), tuple(paths), trajectory, floor, time.perf_counter() - begin)

@@ -91,6 +91,22 @@ class UnreachableError(SearchError):
     status = "UNREACHABLE"
 
 
+class ImpossibleError(SearchError):
+    """Proven: without the moves that the arm cannot make, no sequence fulfils the goal.
+
+    ``excluded``: these moves, each in words with its reason.
+    """
+
+    status = "MOTION_FAILED"
+    module = "motion"
+
+    def __init__(
+        self, problem: str, expanded: int, seconds: float, excluded: Sequence[str] = ()
+    ) -> None:
+        super().__init__(problem, expanded, seconds)
+        self.excluded = tuple(excluded)
+
+
 class SearchLimitError(SearchError):
     """Not reached within the bound on expansions: nothing is proven."""
 

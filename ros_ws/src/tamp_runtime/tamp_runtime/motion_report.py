@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
+from enum import Enum, IntEnum
 from typing import Final
 
 
@@ -48,6 +48,15 @@ class ArmPlace(IntEnum):
     MOVING = 3
 
 
+class Excludes(str, Enum):
+    """What of a move cannot be, with the words of MotionStatus."""
+
+    TAKING = "taking"
+    PUTTING = "putting"
+    MOVING = "moving"
+    SCENE = "scene"
+
+
 #: What is held where the fingers hold something that the motion node did not pick.
 SOMETHING: Final = "?"
 
@@ -78,3 +87,5 @@ class MotionReport:
     arm: ArmPlace = ArmPlace.UNKNOWN
     held: str = ""
     hand: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    violation: float = 0.0
+    excludes: str = ""

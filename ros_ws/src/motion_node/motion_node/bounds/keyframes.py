@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..constraints import Clearances
-from ..errors import KEYFRAMES
+from ..errors import KEYFRAMES, InfeasibleError
 from ..phases import Phase
 from ..robots.inverse_kinematics import InverseKinematics
 from .pose import Poses
+from .pose_among_obstacles import PosesAmongObstacles
 from .switches import SwitchProblems
 
 Array = NDArray[np.float64]
@@ -21,9 +22,13 @@ Array = NDArray[np.float64]
 class Keyframes:
     """Solves P1 for each switch, then P2 from there."""
 
-    def __init__(self, problems: SwitchProblems, inverse: InverseKinematics) -> None:
+    def __init__(
+        self, problems: SwitchProblems, inverse: InverseKinematics, obstacles: bool = False
+    ) -> None:
+        """``obstacles``: whether there is more around than blocks."""
         self.problems = problems
         self._poses = Poses(problems, inverse)
+        self._among, self._obstacles = PosesAmongObstacles(problems, inverse), obstacles
 
     def solve(self, start: Array, phases: Sequence[Phase], clear: Clearances) -> Array:
         """Configurations at the switches of all phases but the way home, shape (k, n) [rad].
@@ -39,7 +44,18 @@ class Keyframes:
         if not phases:
             return np.zeros((0, self.problems.model.dimension))
         demands = self.problems.demands(phases, clear)
-        poses = self._poses.solve(phases, demands)
+        if self._obstacles:
+            poses = self._among.solve_all(phases, clear)
+            solution = self.problems.solve(start, poses, demands, thorough=False)
+            # No constraint reaches from switch to switch: the poses are a solution, too.
+            return solution.x[1:-1] if solution.feasible else np.array(poses)
+        try:
+            poses = self._poses.solve(phases, demands)
+        except InfeasibleError as error:
+            for phase in phases:
+                if (phase.move, phase.kind) == (error.move, error.phase):
+                    error.excludes = self._among.excludes(phase, clear)
+            raise
         solution = self.problems.solve(start, poses, demands)
         if solution.feasible:
             return solution.x[1:-1]

@@ -13,7 +13,7 @@ Each phase has ``steps`` intervals. The hand moves vertically during the first a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from ..constraints import Clearances, Constraint
 from ..errors import PATH, InfeasibleError
 from ..nlp import Attached, Demand, DifferenceCost, KOrderProblem, Solution, SolverFactory
+from ..obstacles import Obstacle
 from ..phases import Phase, PhasePath
 from ..robots.inverse_kinematics import InverseKinematics
 from ..robots.model import ArmModel
@@ -33,6 +34,10 @@ Array = NDArray[np.float64]
 #: Starting points in the order in which they are tried: how much higher than needed to pass over
 #: the stacks [m], and the share by which the way across is drawn towards the arm's base.
 _TRIES = ((0.0, 0.0), (0.08, 0.0), (0.04, 0.12), (0.15, 0.25))
+#: So many ways round obstacles are tried; the straight one before them, if it misses what is asked
+#: by no more than this [m].
+_ROUND = 3
+_HOPEFUL = 0.05
 
 
 class PathProblem:
@@ -41,6 +46,10 @@ class PathProblem:
     Args:
         acceleration: acceleration limits, shape (n,) [rad/s²]; they weigh the joints.
         phases: number of phases solved at once, between given switches.
+        obstacles: around which starting points lead.
+
+    Attributes:
+        obstacles: may be changed.
     """
 
     def __init__(
@@ -53,8 +62,10 @@ class PathProblem:
         settings: PathSettings,
         solver: SolverFactory,
         phases: int = 1,
+        obstacles: Sequence[Obstacle] = (),
     ) -> None:
         self._model, self._inverse, self._settings = model, inverse, settings
+        self.obstacles = tuple(obstacles)
         intervals = settings.steps
         weights = (np.median(acceleration) / acceleration) ** 2 * intervals**3 / 10.0
         steps = phases * intervals + 1
@@ -100,11 +111,9 @@ class PathProblem:
         # Where the measured start is a little outside its limits, it may come back in its own time.
         lower = np.minimum(model.lower, configurations[0])
         upper = np.maximum(model.upper, configurations[0])
-        attempts = []
-        for higher, inwards in _TRIES:
-            guesses = [way.guess(self._inverse, higher, inwards) for way in ways]
-            x = np.vstack([guesses[0], *[guess[1:] for guess in guesses[1:]]])
-            solution = self._problem.solve(x, demands, lower, upper)
+        attempts: list[Solution] = []
+        for x, thorough in self._starts(ways, demands):
+            solution = self._problem.solve(x, demands, lower, upper, thorough)
             if solution.feasible:
                 ends = range(0, len(x), settings.steps)
                 return [
@@ -114,6 +123,35 @@ class PathProblem:
             attempts.append(solution)
         raise self._error(phases, min(attempts, key=lambda item: item.violation))
 
+    def _starts(
+        self, ways: Sequence[Way], demands: Sequence[Demand]
+    ) -> Iterator[tuple[Array, bool]]:
+        """Starting points in the order in which they are tried, and how thoroughly."""
+        if not self.obstacles:
+            for higher, inwards in _TRIES:
+                yield _joined([way.guess(self._inverse, higher, inwards) for way in ways]), True
+            return
+        straight = _joined([way.guess(self._inverse, 0.0, 0.0) for way in ways])
+        hopeful = self._missed(straight, demands) < _HOPEFUL
+        if hopeful:
+            yield straight, False
+        around = [way.guesses_round(self._inverse, self.obstacles, _ROUND) for way in ways]
+        for guesses in zip(*around):
+            yield _joined(guesses), False
+        if not hopeful:
+            yield straight, False
+        for higher, inwards in _TRIES[1:]:
+            yield _joined([way.guess(self._inverse, higher, inwards) for way in ways]), False
+
+    def _missed(self, x: Array, demands: Sequence[Demand]) -> float:
+        """By how much a starting point misses what is asked most [m or rad]."""
+        found = []
+        for (steps, group), demand in zip(self._groups, demands):
+            at = [k + s for k in range(0, len(x) - 1, self._settings.steps) for s in steps]
+            values = np.array(group.rows.value(x[at].T, demand.parameters.T)).T
+            found.append(float(demand.excess(values).max(initial=0.0)))
+        return max(found, default=0.0)
+
     def _error(self, phases: Sequence[Phase], solution: Solution) -> InfeasibleError:
         found = [
             (group.worst(own), len(steps))
@@ -121,6 +159,11 @@ class PathProblem:
         ]
         worst, steps_a_phase = max(found, key=lambda item: item[0].amount)
         return worst.error(PATH, phases[worst.step // steps_a_phase])
+
+
+def _joined(guesses: Sequence[Array]) -> Array:
+    """The starting points of phases as one."""
+    return np.vstack([guesses[0], *[guess[1:] for guess in guesses[1:]]])
 
 
 def _accelerations(phases: int, intervals: int) -> Array:

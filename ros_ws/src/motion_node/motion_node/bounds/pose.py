@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import POSE, InfeasibleError
+from ..errors import POSE, TAKING, InfeasibleError
 from ..nlp import Demand
 from ..phases import PICK, Phase
 from ..robots.inverse_kinematics import InverseKinematics
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class _Guess:
+class Guess:
     """A configuration (n,), by how much it misses what is asked, rounded to mm, and how far its
     elbow is swung from upright."""
 
@@ -46,6 +46,7 @@ def check_widths(phases: Sequence[Phase], max_width: float) -> None:
                 violation=phase.grasp.width - max_width,
                 move=phase.move,
                 phase=phase.kind,
+                excludes=TAKING,
             )
 
 
@@ -70,7 +71,7 @@ class Poses:
         ]
 
     def _solve_one(
-        self, phase: Phase, demands: Sequence[Demand], guesses: Sequence[_Guess]
+        self, phase: Phase, demands: Sequence[Demand], guesses: Sequence[Guess]
     ) -> Array:
         if guesses[0].score == 0.0:
             return guesses[0].q
@@ -83,7 +84,7 @@ class Poses:
         least = min(failed, key=lambda item: item.violation)
         raise self._problems.error(POSE, least, [phase])
 
-    def _guesses(self, phases: Sequence[Phase], demands: Sequence[Demand]) -> list[list[_Guess]]:
+    def _guesses(self, phases: Sequence[Phase], demands: Sequence[Demand]) -> list[list[Guess]]:
         """Configurations near the rest posture turned towards each switch, the best one first.
 
         The arm may have a joint more than a pose asks for. Beside a tall stack the forearm has to
@@ -107,7 +108,7 @@ class Poses:
             missed = np.abs(inverse.residual(configurations, positions)).max(axis=1)
             return np.round(self._problems.excess(configurations, demands) + 10 * missed, 3)
 
-        found = [[_Guess(q, float(s))] for q, s in zip(upright, score(upright))]
+        found = [[Guess(q, float(s))] for q, s in zip(upright, score(upright))]
         if all(own[0].score == 0.0 for own in found):
             return found
         seeding = model.arm.seeding
@@ -117,5 +118,5 @@ class Poses:
                 swung = q + side * seeding.swing_step * inverse.self_motion(q)
                 q = inverse.solve(positions, directions, swung, iterations=8)
                 for own, configuration, value in zip(found, q, score(q)):
-                    own.append(_Guess(configuration, float(value), step + 1))
+                    own.append(Guess(configuration, float(value), step + 1))
         return [sorted(own, key=lambda guess: (guess.score, guess.swing)) for own in found]

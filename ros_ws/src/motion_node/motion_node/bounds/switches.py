@@ -20,7 +20,7 @@ from ..errors import InfeasibleError
 from ..nlp import Attached, Demand, DifferenceCost, KOrderProblem, Solution, SolverFactory
 from ..phases import Phase
 from ..robots.model import ArmModel
-from .groups import grouped
+from .groups import Violation, grouped
 
 Array = NDArray[np.float64]
 
@@ -72,11 +72,20 @@ class SwitchProblems:
         moments = [AtSwitch(self.model.arm, phase, clear) for phase in phases]
         return [group.at_switches(moments) for group in self._groups]
 
-    def solve(self, start: Array, guess: Sequence[Array], demands: Sequence[Demand]) -> Solution:
-        """Configurations at switches between ``start`` (n,) and home, ``guess`` being near them."""
+    def solve(
+        self,
+        start: Array,
+        guess: Sequence[Array],
+        demands: Sequence[Demand],
+        thorough: bool = True,
+    ) -> Solution:
+        """Configurations at switches between ``start`` (n,) and home, ``guess`` being near them.
+
+        See :meth:`KOrderProblem.solve` for ``thorough``.
+        """
         model = self.model
         x = np.vstack([start, *guess, model.home])
-        return self.problem(len(guess)).solve(x, demands, model.lower, model.upper)
+        return self.problem(len(guess)).solve(x, demands, model.lower, model.upper, thorough)
 
     def excess(self, q: Array, demands: Sequence[Demand]) -> Array:
         """By how much configurations (k, n) miss what k switches ask, summed over rows, (k,).
@@ -90,6 +99,18 @@ class SwitchProblems:
             values = np.array(function(q.T, demand.parameters.T)).T
             total += demand.excess(values)[:, group.compared].sum(axis=1)
         return total
+
+    def worst_but_the_hands_pose(self, q: Array, demands: Sequence[Demand]) -> Violation:
+        """What a configuration (n,) with the right pose of the hand misses most.
+
+        Args:
+            demands: of one switch.
+        """
+        found = []
+        for group, demand in zip(self._groups, demands):
+            values = np.array(group.rows.value(q, demand.parameters[0])).reshape(1, -1)
+            found.append(group.worst(np.where(group.compared, demand.excess(values), 0.0)))
+        return max(found, key=lambda violation: violation.amount)
 
     def error(self, bound: str, solution: Solution, phases: Sequence[Phase]) -> InfeasibleError:
         """Names the constraint that a solution violates most."""

@@ -3,19 +3,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..constraints import AlongPath, Clearances, VerticalEnd, lowered
+from ..obstacles import Obstacle
 from ..phases import Phase, Switch
 from ..robots.inverse_kinematics import InverseKinematics
 from ..robots.model import ArmModel
 from ..settings import PathSettings
+from .ways_round import HandGrid
 
 Array = NDArray[np.float64]
 
 #: Stacks nearer than this to the start have to be risen above first [m].
 NEAR_START = 0.15
+#: Starting points among obstacles keep so much more than the margin [m].
+SPARE = 0.01
 
 
 class Way:
@@ -106,3 +112,44 @@ class Way:
         shares.append(1.0)
         at = np.linspace(0.0, 1.0, shape.steps + 1)
         return np.column_stack([np.interp(at, shares, column) for column in np.array(knots).T])
+
+    def guesses_round(
+        self, inverse: InverseKinematics, obstacles: Sequence[Obstacle], count: int
+    ) -> Iterator[Array]:
+        """Up to ``count`` starting points that lead around obstacles, the shortest way first.
+
+        Each of shape (steps + 1, n) [rad].
+        """
+        shape, along = self._shape, self.along
+        ends, yaws = [], []
+        for end, q in ((along.first, self.start_q), (along.last, self._goal_q)):
+            point, yaw = self._model.hand_at(q)
+            if end is not None:
+                point = np.array([*end.reference[:2], end.height + end.lift])
+            ends.append(point)
+            yaws.append(yaw)
+        margin, floor = self._clear.margin + SPARE, self._clear.floor
+        gripper = self._model.arm.gripper
+        grid = HandGrid(
+            gripper, self._phase, obstacles, np.array(ends), np.array(yaws), margin, floor
+        )
+        first = shape.vertical if along.first else 0
+        last = shape.steps - (shape.vertical if along.last else 0)
+        share = np.linspace(0.0, 1.0, last - first + 1)
+        near = self.start_q + share[:, None] * (self._goal_q - self.start_q)
+        turned = yaws[0] + share * _half_turn(yaws[1] - yaws[0])
+        at = np.arange(shape.steps + 1)
+        for way in grid.ways(count):
+            lengths = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(way, axis=0), axis=1)))
+            points = np.column_stack(
+                [np.interp(share * lengths[-1], lengths, axis) for axis in way.T]
+            )
+            q = inverse.solve(points, turned, near)
+            knots = np.vstack([self.start_q, q, self._goal_q])
+            when = np.concatenate([[-1e-9], at[first : last + 1], [shape.steps + 1e-9]])
+            yield np.column_stack([np.interp(at, when, column) for column in knots.T])
+
+
+def _half_turn(angle: float) -> float:
+    """The angle that is the same up to whole turns, in [-pi, pi) [rad]."""
+    return float(np.mod(angle + np.pi, 2 * np.pi) - np.pi)

@@ -12,6 +12,7 @@ from ..robots import Arm
 from .constraint import Constraint
 from .hand_clearance import HandClearance
 from .link_clearance import LinkClearance
+from .obstacle_clearance import ObstacleClearance, capacity_for
 from .situation import AlongPath, AtSwitch, Clearances, VerticalEnd, lowered
 from .switch_pose import SwitchPose
 from .table_clearance import TableClearance
@@ -38,11 +39,13 @@ __all__ = [
     "Constraint",
     "HandClearance",
     "LinkClearance",
+    "ObstacleClearance",
     "SwitchPose",
     "TableClearance",
     "Upright",
     "VerticalEnd",
     "VerticalLine",
+    "capacity_for",
     "default_constraints",
     "lowered",
 ]

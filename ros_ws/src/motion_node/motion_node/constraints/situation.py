@@ -26,10 +26,12 @@ class Clearances:
     Attributes:
         margin: between the arm with what it holds and the blocks and the table [m].
         floor: height of the table [m].
+        extra: kept from obstacles besides, between the vertical ends of a phase [m].
     """
 
     margin: float
     floor: float
+    extra: float = 0.0
 
     @property
     def reserve(self) -> float:

@@ -44,6 +44,8 @@ def findings(error: MotionError, moves: int) -> dict[str, Any]:
             "bound": error.bound,
             "object_name": error.object_name,
             "constraint": error.constraint,
+            "violation": error.violation,
+            "excludes": error.excludes,
             "move": min(error.move, max(moves - 1, 0)),
             "phase": error.phase,
         }

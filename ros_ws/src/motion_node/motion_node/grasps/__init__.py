@@ -23,8 +23,10 @@ GRASPS: Final[dict[str, GraspFunction]] = {
 }
 
 
-def choose_grasp(block: Block, circumstances: Circumstances, max_width: float) -> Grasp:
-    """The preferred way to take a block that the open fingers go around, if there is one.
+def grasps_for(block: Block, circumstances: Circumstances, max_width: float) -> list[Grasp]:
+    """The ways to take a block that the open fingers go around, the preferred one first.
+
+    If they go around it in no way, all ways, so that the first can be told about.
 
     Args:
         max_width: widest block that the open fingers go around [m].
@@ -39,7 +41,12 @@ def choose_grasp(block: Block, circumstances: Circumstances, max_width: float) -
         )
     options = GRASPS[block.shape](block, circumstances)
     fitting = [option for option in options if option.width <= max_width]
-    return (fitting or options)[0]
+    return fitting or options
+
+
+def choose_grasp(block: Block, circumstances: Circumstances, max_width: float) -> Grasp:
+    """The preferred one of :func:`grasps_for`."""
+    return grasps_for(block, circumstances, max_width)[0]
 
 
 __all__ = [
@@ -50,6 +57,7 @@ __all__ = [
     "box_grasps",
     "choose_grasp",
     "grasp_height",
+    "grasps_for",
     "prism_grasps",
     "round_grasps",
 ]

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from .compiled import compiled
 from .program import TOLERANCE, Instance, Program
 from .rows import Demand, Rows
-from .solver import SolverFactory
+from .solver import SolverFactory, quickest
 
 Array = NDArray[np.float64]
 
@@ -168,13 +168,21 @@ class KOrderProblem:
         )
         return Program(z, p, cost, g, self._hessian, jacobian, make_curvature)
 
-    def solve(self, x: Array, demands: Sequence[Demand], lower: Array, upper: Array) -> Solution:
+    def solve(
+        self,
+        x: Array,
+        demands: Sequence[Demand],
+        lower: Array,
+        upper: Array,
+        thorough: bool = True,
+    ) -> Solution:
         """Solves from a starting point; the solution may be infeasible, and says so.
 
         Args:
             x: shape (steps, n): the given configurations, and the starting point of the others.
             demands: one for each attached part.
             lower, upper: joint limits, broadcast to (steps, n) [rad].
+            thorough: whether, of several solvers in turn, those behind the first one are asked.
         """
         shape = (self.steps, self.dimension)
         given = x[self.fixed].ravel()
@@ -187,7 +195,8 @@ class KOrderProblem:
             lower_g=_flat([demand.lower for demand in demands]),
             upper_g=_flat([demand.upper for demand in demands]),
         )
-        found = self._solver.solve(instance)
+        solver = self._solver if thorough else quickest(self._solver)
+        found = solver.solve(instance)
         z = found.z
         solved = np.array(x, dtype=float)
         solved[self.free] = z.reshape(-1, self.dimension)

@@ -52,6 +52,11 @@ class Chain:
     def __init__(self, solvers: tuple[Solver, ...]) -> None:
         self._solvers = solvers
 
+    @property
+    def first(self) -> Solver:
+        """The one that is asked first."""
+        return self._solvers[0]
+
     def solve(self, instance: Instance) -> Found:
         """The first feasible point, or where the last solver stopped."""
         for solver in self._solvers[:-1]:
@@ -59,6 +64,11 @@ class Chain:
             if instance.feasible(found.values):
                 return found
         return self._solvers[-1].solve(instance)
+
+
+def quickest(solver: Solver) -> Solver:
+    """The first of several solvers in turn; else the solver itself."""
+    return solver.first if isinstance(solver, Chain) else solver
 
 
 def chain(*factories: SolverFactory) -> SolverFactory:

@@ -69,6 +69,7 @@ class Arm:
         arm_joints: names, in the order of q, shape (n,) everywhere.
         gripper: what is fixed to its last link.
         bodies: spheres that cover those parts of the links behind the hand that come near stacks.
+        upper_bodies: spheres that cover the links above those, which come near obstacles only.
         home: configuration at rest, in which the arm hides nothing from the camera, (n,) [rad].
         acceleration: joint acceleration limits, (n,) [rad/s²]; URDFs have none.
         seeding: where its inverse kinematics starts.
@@ -81,6 +82,7 @@ class Arm:
     home: tuple[float, ...]
     acceleration: tuple[float, ...]
     seeding: Seeding
+    upper_bodies: tuple[BodySphere, ...] = ()
 
     def __post_init__(self) -> None:
         """Raises ValueError if ``home`` or ``acceleration`` is not one number a joint."""

@@ -43,4 +43,16 @@ PANDA: Final = Arm(
     home=(0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785),
     acceleration=(15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0),
     seeding=TurnedHome(swings=6, swing_step=0.35),
+    upper_bodies=(
+        BodySphere("elbow", "panda_link4", (-0.083, 0.082, 0.000), 0.0715),
+        BodySphere("elbow", "panda_link4", (0.000, 0.000, 0.043), 0.0715),
+        BodySphere("elbow", "panda_link4", (-0.055, 0.028, 0.031), 0.0715),
+        BodySphere("upper arm", "panda_link3", (0.039, 0.034, -0.027), 0.0705),
+        BodySphere("upper arm", "panda_link3", (0.082, 0.043, 0.000), 0.0705),
+        BodySphere("upper arm", "panda_link3", (0.000, 0.000, -0.081), 0.0705),
+        BodySphere("shoulder", "panda_link2", (0.000, -0.149, 0.000), 0.0775),
+        BodySphere("shoulder", "panda_link2", (-0.010, 0.002, 0.058), 0.0775),
+        BodySphere("shoulder", "panda_link2", (0.001, -0.059, 0.023), 0.0775),
+        BodySphere("shoulder", "panda_link2", (0.006, 0.010, 0.053), 0.0775),
+    ),
 )

@@ -15,6 +15,7 @@ from scene_graph import Stacks, format_stacks
 from ..errors import (
     CancelledError,
     ConflictError,
+    ImpossibleError,
     MotionSilentError,
     NoSceneGraphError,
     NotConfidentError,
@@ -23,7 +24,7 @@ from ..errors import (
     TooManyReplansError,
 )
 from ..goals.goal import Goal
-from ..search import SearchResult, make_plan
+from ..search import SearchResult
 from ..settings import EACH_MOVE, WATCH, Settings
 from .account import account_for, describe_difference, in_the_view
 from .arm_home import ArmHome
@@ -32,6 +33,7 @@ from .motion_link import MotionLink
 from .plan import Plan, plan_for
 from .plan_run import PlanRun
 from .plan_watch import PlanWatch
+from .possible_moves import PossibleMoves
 from .report import Outcome, Progress, Stage, Status
 from .scene import Scene
 from .scene_watch import SceneWatch
@@ -82,6 +84,7 @@ class ClosedLoop:
             newest=lambda: scenes.newest,
         )
         self._patience, self._contradictions = 1, list[str]()
+        self._possible = PossibleMoves(settings, cancelled)
         self._requested = scenes.now()
         self.outcome = Outcome()
 
@@ -125,9 +128,17 @@ class ClosedLoop:
         self._note(initial=scene)
         plans = 0
         while not goal.holds(scene.stacks):
-            if plans:
+            if plans and not self._possible.just_refused:
                 self._count_replan(scene)
-            found = self._plan(scene, goal)
+            try:
+                found = self._plan(scene, goal)
+            except ImpossibleError as error:
+                # The poses are seen anew, which may be enough.
+                if not self._possible.forget_once():
+                    raise
+                self._because(str(error))
+                scene = self._look(Stage.PERCEIVING, "looking again", goal.names)
+                continue
             if not plans:
                 self._note(moves_planned=len(found.moves))
             plans += 1
@@ -161,6 +172,9 @@ class ClosedLoop:
             end = self._runs.carry_out(plan, watch)
         finally:
             self._add_up(self._teller.progress.motion, self._clock.now() - started)
+        if refused := self._possible.refused(plan, end.report):
+            self._because(f"{refused}; another way is planned")
+            return plan.scene
         failure = self._runs.judge(end)
         reason = "; ".join(self.outcome.causes[before:])
         try:
@@ -236,13 +250,7 @@ class ClosedLoop:
     def _plan(self, scene: Scene, goal: Goal) -> SearchResult:
         self._tell(Stage.PLANNING, f"searching from {format_stacks(scene.stacks)} to '{goal}'")
         with self._timed("plan_seconds"):
-            return make_plan(
-                scene.stacks,
-                goal,
-                self._settings.max_expansions,
-                self._cancelled,
-                self._settings.search_algorithm,
-            )
+            return self._possible.plan(scene, goal)
 
     def _add_up(self, last: MotionReport, elapsed: float) -> None:
         """Notes what became of a plan; ``elapsed`` [s] is motion optimisation and execution."""
