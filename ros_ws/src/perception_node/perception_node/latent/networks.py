@@ -75,4 +75,6 @@ class Decoder(nn.Module):
 
     def forward(self, quantised: Tensor) -> Tensor:
         """See the class."""
-        return nn.functional.pixel_shuffle(self.head(self.body(self.stem(quantised))), _STRIDE) + 0.5
+        return (
+            nn.functional.pixel_shuffle(self.head(self.body(self.stem(quantised))), _STRIDE) + 0.5
+        )

@@ -102,7 +102,9 @@ class EncoderTrainer:
             [torch.randperm(renders, generator=self.rng)[:2] for _ in range(len(picked))]
         )
         index, pair = picked.numpy(), pairs.numpy()
-        one, other = (values_of(self.pictures[index, pair[:, side % pair.shape[1]]]) for side in (0, 1))
+        one, other = (
+            values_of(self.pictures[index, pair[:, side % pair.shape[1]]]) for side in (0, 1)
+        )
         return self._grained(one), self._grained(other)
 
     def _grained(self, images: Tensor) -> Tensor:

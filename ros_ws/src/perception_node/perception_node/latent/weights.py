@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Weights files of the state encoder: safetensors, so loading executes nothing from the file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Final
+
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save_file
+
+from perception_node.errors import WeightsError
+
+from .state_encoder import EncoderConfig, StateEncoder
+
+#: Marks a file as ours, in its header.
+FORMAT: Final = "tamp state encoder G, version 1"
+
+_RETRAIN: Final = "train new ones with `make train-latent`"
+
+
+def save_encoder(encoder: StateEncoder, path: Path, metadata: Mapping[str, str]) -> None:
+    """Writes the weights; replaces an older file only once the new one is complete.
+
+    Args:
+        metadata: how they came about, kept in the header.
+    """
+    header = {**metadata, "format": FORMAT, "config": json.dumps(asdict(encoder.config))}
+    tensors = {name: value.contiguous() for name, value in encoder.state_dict().items()}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_suffix(".partial")
+    save_file(tensors, partial, metadata=header)
+    partial.replace(path)
+
+
+def load_encoder(path: Path) -> StateEncoder:
+    """An encoder with the weights of a file, ready for inference.
+
+    Raises:
+        WeightsError: the file is missing, damaged, or was not made by :func:`save_encoder`.
+    """
+    if not path.is_file():
+        raise WeightsError(f"weights file {path} does not exist; {_RETRAIN}", path)
+    try:
+        with safe_open(path, framework="pt") as file:
+            header = file.metadata() or {}
+            tensors = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+    except (SafetensorError, OSError, ValueError) as error:
+        raise WeightsError(
+            f"weights file {path} is damaged or not a safetensors file ({error}); {_RETRAIN}", path
+        ) from error
+    if header.get("format") != FORMAT:
+        raise WeightsError(f"weights file {path} holds no state encoder; {_RETRAIN}", path)
+    try:
+        encoder = StateEncoder(EncoderConfig(**json.loads(header["config"])))
+        encoder.load_state_dict(tensors)
+    except (KeyError, TypeError, ValueError, RuntimeError) as error:
+        raise WeightsError(
+            f"weights file {path} is of another version ({error}); {_RETRAIN}", path
+        ) from error
+    if not all(value.isfinite().all() for value in tensors.values()):
+        raise WeightsError(
+            f"weights file {path} holds values that are not finite; {_RETRAIN}", path
+        )
+    return encoder.eval()
