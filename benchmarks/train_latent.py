@@ -11,7 +11,6 @@ import sys
 from pathlib import Path
 
 import torch
-
 from latent.blocks_world import DataError, read_set
 from latent.trainings import (
     StoppedError,
@@ -21,6 +20,7 @@ from latent.trainings import (
     train_encoder,
     transitions_of,
 )
+
 from perception_node.errors import PerceptionError
 from perception_node.latent.objective import Weights
 from perception_node.latent.quantiser import QUANTISERS

@@ -12,7 +12,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
@@ -53,7 +53,7 @@ class SetConfig:
     blocks: int = 5
     renders: int = 4
     seed: int = 0
-    jitter: Jitter = Jitter()
+    jitter: Jitter = field(default_factory=Jitter)
 
 
 def all_states(blocks: int) -> list[Stacks]:
@@ -63,7 +63,7 @@ def all_states(blocks: int) -> list[Stacks]:
 
 
 def all_transitions(states: Sequence[Stacks]) -> NDArray[np.int32]:
-    """Every (state, move, next state) as indices, shape (t, 3): 10,800 for 5 blocks, 1,440 for 4."""
+    """Every (state, move, next state) as indices, shape (t, 3): 10,800 of 5 blocks, 1,440 of 4."""
     index = {state: number for number, state in enumerate(states)}
     found = [
         (number, action, index[apply_move(state, move)])

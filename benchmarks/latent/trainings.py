@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The trainings of Chapter 4 on blocks-world: the state encoder, then the action model on its codes.
+"""The trainings of Chapter 4 on blocks-world: state encoder, then action model on its codes.
 
 Each takes up its checkpoint, and is not done again where its weights are there already.
 """
@@ -12,6 +12,7 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
+from results_file import source_commit
 
 from perception_node.latent.objective import Parts
 from perception_node.latent.state_encoder import StateEncoder
@@ -19,7 +20,6 @@ from perception_node.latent.trainer import EncoderTrainer, TrainingConfig
 from perception_node.latent.weights import load_encoder, save_encoder
 from planner_node.action_models.training import ActionTrainer, ActionTraining, Transitions
 from planner_node.action_models.weights import load_action_model, save_action_model
-from results_file import source_commit
 
 from .blocks_world import MOVES, BlocksWorld
 from .progress import progress

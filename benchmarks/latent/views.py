@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of a state that differ in what the state does not tell: camera, light, grain, offsets."""
+"""Pictures of a state that differ in what is not its own: camera, light, grain, offsets."""
 
 from __future__ import annotations
 

@@ -96,7 +96,7 @@ class EffectNetwork(nn.Module):
         return logits
 
     def after(self, bits: Tensor, moves: Tensor) -> tuple[Tensor, Tensor]:
-        """What moves do: bits (n, b, 32, 32) and actions (n,) -> bits, and the least margin (n,)."""
+        """Bits (n, b, 32, 32) and actions (n,) -> the bits after, and the least margin (n,)."""
         patches = patches_of(bits).clone()
         logits = self(patches[:, self.active], moves)
         patches[:, self.active] = (logits > 0.0).to(patches.dtype)

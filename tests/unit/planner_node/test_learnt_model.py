@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The learnt action model: what it copies, what it drops, and that its training is a function."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from numpy.typing import NDArray
+
+from planner_node.action_models.effect_network import (
+    Discriminator,
+    EffectConfig,
+    EffectNetwork,
+    bits_of_patches,
+    patches_of,
+)
+from planner_node.action_models.learnt import LearntModel
+from planner_node.action_models.training import (
+    THESIS,
+    ActionTrainer,
+    ActionTraining,
+    CheckpointError,
+    Transitions,
+)
+from planner_node.action_models.weights import (
+    ModelWeightsError,
+    load_action_model,
+    save_action_model,
+)
+from scene_graph import all_moves
+
+MOVES = all_moves(3)
+CONFIG = EffectConfig(bits=2, width=16, layers=1, heads=2, hidden=8)
+
+
+def toy_transitions(renders: int = 1) -> Transitions:
+    """Three moments: a mark in one of three patches, that moves between them."""
+    bits = np.zeros((3, renders, 2, 32, 32), np.uint8)
+    for place in range(3):
+        bits[place, :, :, 4:8, 8 * place : 8 * place + 4] = 1
+    codes = np.packbits(bits.reshape(3, renders, -1), axis=2)
+    before = np.array([move.source for move in MOVES])
+    after = np.array([move.target for move in MOVES])
+    possible = np.zeros((3, 6), np.bool_)
+    possible[before, np.arange(6)] = True
+    return Transitions(codes, before, np.arange(6), after, possible)
+
+
+def trained(steps: int = 150, **changes: object) -> ActionTrainer:
+    config = ActionTraining(CONFIG, steps=steps, batch=16, learning_rate=1e-2, **changes)  # type: ignore[arg-type]
+    trainer = ActionTrainer(toy_transitions(), config)
+    trainer.run(lambda *_: True)
+    return trainer
+
+
+def test_patches_are_the_code_in_another_order() -> None:
+    bits = torch.arange(2 * 3 * 32 * 32).reshape(2, 3, 32, 32).float()
+    patches = patches_of(bits)
+    assert torch.equal(bits_of_patches(patches), bits)
+    assert set(patches[0, 9].long().tolist()) == set(bits[0, :, 4:8, 4:8].flatten().long().tolist())
+
+
+def test_patches_that_never_change_are_copied() -> None:
+    trainer = ActionTrainer(toy_transitions(), ActionTraining(CONFIG))
+    assert trainer.policy.active.sum() == 3
+    bits = torch.randint(2, (4, 2, 32, 32)).float()
+    after, margin = trainer.policy.after(bits, torch.zeros(4, dtype=torch.long))
+    still = ~trainer.policy.active
+    assert torch.equal(patches_of(after)[:, still], patches_of(bits)[:, still])
+    assert margin.shape == (4,)
+
+
+def test_transitions_are_learnt_from_codes_alone() -> None:
+    trainer, seen = trained(), toy_transitions()
+    model = LearntModel(trainer.policy, trainer.discriminator, MOVES)
+    states = [code.tobytes() for code in seen.codes[:, 0]]
+    for place, options in enumerate(model.successors(states)):
+        assert options == [(m, states[m.target]) for m in MOVES if m.source == place]
+
+
+def test_what_the_inverse_move_does_not_undo_is_dropped() -> None:
+    trainer, seen = trained(), toy_transitions()
+    states = [code.tobytes() for code in seen.codes[:, 0]]
+    lost = seen.codes[1, 0]
+
+    def snap(codes: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+        """As if the third code were taken for the second one."""
+        third = (codes == seen.codes[2, 0]).all(1)
+        return np.where(third[:, None], lost, codes), np.ones(len(codes), np.bool_)
+
+    believing = LearntModel(trainer.policy, trainer.discriminator, MOVES, snap, verify=False)
+    checking = LearntModel(trainer.policy, trainer.discriminator, MOVES, snap)
+    assert {move.target for move, _ in believing.successors(states[:1])[0]} == {1, 2}
+    assert {move.target for move, _ in checking.successors(states[:1])[0]} == {1}
+
+
+def test_the_objective_of_the_thesis_can_be_trained_on() -> None:
+    trainer = ActionTrainer(toy_transitions(2), ActionTraining(CONFIG, THESIS, steps=30))
+    losses: list[float] = []
+    trainer.run(lambda _step, policy, _possible: losses.append(policy) is None)
+    assert np.mean(losses[-5:]) < np.mean(losses[:5])
+
+
+def test_a_training_goes_on_from_its_checkpoint_as_if_it_had_not_stopped(tmp_path: Path) -> None:
+    path = tmp_path / "checkpoint.pt"
+    config = ActionTraining(CONFIG, steps=12, batch=4)
+    whole = ActionTrainer(toy_transitions(2), config)
+    assert whole.run(lambda *_: True)
+    first = ActionTrainer(toy_transitions(2), config)
+    assert not first.run(lambda step, *_: step < 5, path)
+    second = ActionTrainer(toy_transitions(2), config)
+    second.resume(path)
+    assert second.step == 5 and second.run(lambda *_: True)
+    for one, other in zip(whole.policy.parameters(), second.policy.parameters()):
+        assert torch.equal(one, other)
+    with pytest.raises(CheckpointError, match="other hyper-parameters"):
+        ActionTrainer(toy_transitions(2), ActionTraining(CONFIG, steps=13, batch=4)).resume(path)
+    path.write_bytes(b"no checkpoint")
+    with pytest.raises(CheckpointError, match="damaged"):
+        second.resume(path)
+
+
+def test_weights_come_back_as_they_were(tmp_path: Path) -> None:
+    path = tmp_path / "model.safetensors"
+    active = torch.zeros(64, dtype=torch.bool)
+    active[:5] = True
+    policy, discriminator = EffectNetwork(CONFIG, active), Discriminator(CONFIG, active)
+    save_action_model(policy, discriminator, path, {"commit": "none"})
+    loaded, judge = load_action_model(path)
+    patches = torch.randint(2, (3, 5, CONFIG.values)).float()
+    moves = torch.tensor([0, 3, 5])
+    assert torch.equal(loaded(patches, moves), policy.eval()(patches, moves))
+    assert torch.equal(judge(patches), discriminator(patches))
+
+
+@pytest.mark.parametrize("content", [None, b"", b"nonsense" * 10])
+def test_a_file_that_is_no_action_model_is_refused(tmp_path: Path, content: bytes | None) -> None:
+    path = tmp_path / "model.safetensors"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(ModelWeightsError, match="train-latent"):
+        load_action_model(path)
