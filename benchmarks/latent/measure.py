@@ -90,10 +90,10 @@ def encoder_rows(bench: Bench, images: int) -> list[Row]:
         rows.append(Row(label, "reconstruction error", error, "", len(sample)))
     sample = bench.five.images[:: max(1, len(bench.five.images) // images), 0]
     for alpha in ALPHAS:
-        for settled in (False, True):
-            places, codes_changed = changed_by_noise(encoder, sample, alpha, settled, TEST_SEED)
-            kind = "settled" if settled else "as encoded"
-            bound = "<= 0.01" if settled and alpha == 0.01 else None
+        for snapped in (False, True):
+            places, codes_changed = changed_by_noise(encoder, sample, alpha, snapped, TEST_SEED)
+            kind = "snapped" if snapped else "as encoded"
+            bound = "<= 0.01" if snapped and alpha == 0.01 else None
             rows.append(
                 Row(
                     f"noise α = {alpha:g}",
@@ -117,7 +117,7 @@ def _encoding_time(encoder: StateEncoder, images: NDArray[np.uint8]) -> Row:
         seconds.append(time.perf_counter() - begun)
     spread = (1e3 * min(seconds), 1e3 * max(seconds))
     value = 1e3 * float(np.median(seconds))
-    return Row("one image", "encoding and settling, median", value, "ms", len(images), spread,
+    return Row("one image", "encoding and snapping, median", value, "ms", len(images), spread,
                required="<= 50")  # fmt: skip
 
 
@@ -188,7 +188,7 @@ def learnt_rows(bench: Bench, details: dict[str, Any], searches: Sequence[str]) 
         lengths = shortest_lengths(world.layouts, tasks)
         for verify in (True, False):
             for name in searches if verify else searches[:1]:
-                snap = bench.encoder.settle if verify else no_snap
+                snap = bench.encoder.snap if verify else no_snap
                 model = learnt_model(bench, BITS, snap, verify)
                 if model is None:
                     continue
@@ -235,7 +235,7 @@ def _domains(
 
 
 def _snapped(model: LearntModel, bench: Bench) -> Predict:
-    return lambda codes, actions: bench.encoder.settle(model.raw(codes, actions))[0]
+    return lambda codes, actions: bench.encoder.snap(model.raw(codes, actions))[0]
 
 
 def _name(objective: str) -> str:

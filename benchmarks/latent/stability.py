@@ -62,20 +62,20 @@ def noisy(images: Images, alpha: float, seed: int) -> Images:
 
 
 def changed_by_noise(
-    encoder: StateEncoder, images: Images, alpha: float, settled: bool, seed: int
+    encoder: StateEncoder, images: Images, alpha: float, snapped: bool, seed: int
 ) -> tuple[float, float]:
     """Share of places whose code noise changes, and of images of whose code it changes anything."""
-    clean = encoder.unpack(encoder.encode(images, settled))
-    other = encoder.unpack(encoder.encode(noisy(images, alpha, seed), settled))
+    clean = encoder.unpack(encoder.encode(images, snapped))
+    other = encoder.unpack(encoder.encode(noisy(images, alpha, seed), snapped))
     differs = (clean != other).any(1)
     return float(differs.float().mean()), float(differs.flatten(1).any(1).float().mean())
 
 
-def reconstruction_error(encoder: StateEncoder, images: Images, settled: bool = False) -> float:
+def reconstruction_error(encoder: StateEncoder, images: Images, snapped: bool = False) -> float:
     """Mean squared error of decoded codes; values are 0 to 1."""
     errors = []
     for start in range(0, len(images), 256):
         part = images[start : start + 256]
-        shown = encoder.decode(encoder.encode(part, settled))
+        shown = encoder.decode(encoder.encode(part, snapped))
         errors.append(float(((shown / 255.0 - part / 255.0) ** 2).mean()) * len(part))
     return sum(errors) / len(images)

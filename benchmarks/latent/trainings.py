@@ -77,15 +77,16 @@ def train_encoder(folder: Path, world: BlocksWorld, config: TrainingConfig) -> S
 
         if not trainer.run(on_step, checkpoint):
             raise StoppedError
+    trainer.encoder.learn_parts(world.images)
     metadata = {"commit": source_commit(), "training_seconds": f"{trainer.seconds:.0f}"}
     save_encoder(trainer.encoder, path, metadata | {"training": repr(asdict(config))})
     return load_encoder(path)
 
 
-def codes_of(encoder: StateEncoder, world: BlocksWorld, settled: bool = True) -> NDArray[np.uint8]:
+def codes_of(encoder: StateEncoder, world: BlocksWorld, snapped: bool = True) -> NDArray[np.uint8]:
     """Codes of all pictures of a set, shape (s, r, b)."""
     states, renders = world.images.shape[:2]
-    codes = encoder.encode(world.images.reshape(-1, *world.images.shape[2:]), settled)
+    codes = encoder.encode(world.images.reshape(-1, *world.images.shape[2:]), snapped)
     return codes.reshape(states, renders, -1)
 
 

@@ -70,9 +70,9 @@ def test_a_code_is_packed_and_unpacked_as_it_is() -> None:
 def test_a_code_that_stays_what_it_is_is_told_from_one_that_does_not() -> None:
     torch.manual_seed(3)
     encoder = StateEncoder(SMALL).eval()
-    codes = encoder.encode(pictures()[:, 0], settled=False)
+    codes = encoder.encode(pictures()[:, 0], snapped=False)
     settled, stable = encoder.settle(codes)
-    again = encoder.encode(encoder.decode(settled), settled=False)
+    again = encoder.encode(encoder.decode(settled), snapped=False)
     # Decoded pictures are rounded to 255 levels here, which codes near a threshold may feel.
     assert settled.shape == codes.shape and stable.shape == (3,)
     twice, still = encoder.settle(settled[stable])

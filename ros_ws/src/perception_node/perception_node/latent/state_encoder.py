@@ -18,6 +18,7 @@ from torch import Tensor, nn
 from perception_node.errors import BadImageError
 
 from .networks import IMAGE, MAP, Decoder, Encoder
+from .parts import Parts, find_parts
 from .quantiser import quantiser_named
 
 #: Images (n, 128, 128, 3), 0 to 255.
@@ -48,11 +49,17 @@ class EncoderConfig:
 
 
 class StateEncoder(nn.Module):
-    """G and its inverse, as far as it has one."""
+    """G and its inverse, as far as it has one.
+
+    Attributes:
+        config: what its networks are like.
+        parts: what codes of pictures are made of; None until :meth:`learn_parts` was called.
+    """
 
     def __init__(self, config: EncoderConfig) -> None:
         super().__init__()
         self.config = config
+        self.parts: Parts | None = None
         self.quantiser = quantiser_named(config.quantiser, config.channels)
         self.encoder = Encoder(config.channels, config.width)
         self.decoder = Decoder(config.channels, config.width)
@@ -64,11 +71,11 @@ class StateEncoder(nn.Module):
         return self.quantiser.bits * MAP * MAP
 
     @torch.inference_mode()
-    def encode(self, images: Images, settled: bool = True) -> Codes:
+    def encode(self, images: Images, snapped: bool = True) -> Codes:
         """The codes of images (n, 128, 128, 3) -> (n, bits / 8).
 
         Args:
-            settled: see :meth:`settle`.
+            snapped: see :meth:`snap`.
 
         Raises:
             BadImageError: images of another size or type.
@@ -80,9 +87,21 @@ class StateEncoder(nn.Module):
             )
         parts = []
         for start in range(0, len(images), _BATCH):
-            bits = self._bits_of(values_of(images[start : start + _BATCH]))
-            parts.append(pack(self._settled(bits) if settled else bits))
-        return np.concatenate(parts) if parts else np.zeros((0, self.bits // 8), np.uint8)
+            parts.append(pack(self._bits_of(values_of(images[start : start + _BATCH]))))
+        codes = np.concatenate(parts) if parts else np.zeros((0, self.bits // 8), np.uint8)
+        return self.snap(codes)[0] if snapped else codes
+
+    def learn_parts(self, images: NDArray[np.uint8]) -> None:
+        """Finds the parts of codes in pictures (s, r, 128, 128, 3), r of each of s states."""
+        codes = self.encode(images.reshape(-1, *images.shape[2:]), snapped=False)
+        self.parts = find_parts(codes.reshape(*images.shape[:2], -1), MAP)
+
+    def snap(self, codes: Codes) -> tuple[Codes, NDArray[np.bool_]]:
+        """The valid codes next to codes (n, b), and which were near enough to be meant, (n,).
+
+        By the parts where they were learnt, else by :meth:`settle`.
+        """
+        return self.parts.snap(codes) if self.parts else self.settle(codes)
 
     @torch.inference_mode()
     def decode(self, codes: Codes) -> Images:

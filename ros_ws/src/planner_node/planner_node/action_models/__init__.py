@@ -4,11 +4,12 @@
 from .interface import ActionModel
 from .observed import AmbiguousTransitionError, ObservedModel
 from .on_stacks import StacksModel
-from .oracular import apply_to_graph
+from .oracular import GraphModel, apply_to_graph
 
 __all__ = [
     "ActionModel",
     "AmbiguousTransitionError",
+    "GraphModel",
     "ObservedModel",
     "StacksModel",
     "apply_to_graph",

@@ -86,6 +86,14 @@ class LearntModel:
                     self._known[new[row]].append((self._moves[action], code.tobytes()))
         return [self._known[state] for state in states]
 
+    def rolled_out(self, code: NDArray[np.uint8], moves: Sequence[Move]) -> Codes:
+        """The codes before and after each of some moves, from one code (b,) -> (n + 1, b)."""
+        codes = [code]
+        for move in moves:
+            action = np.array([self._moves.index(move)])
+            codes.append(self._snap(self.raw(codes[-1][None], action))[0][0])
+        return np.stack(codes)
+
     @torch.inference_mode()
     def possible(self, codes: Codes) -> NDArray[np.bool_]:
         """What D says: codes (n, b) -> (n, |A|)."""
