@@ -17,8 +17,11 @@ from typing import Any
 
 import numpy as np
 import torch
+from latent.bench import TEST_SEED, open_bench
 from latent.blocks_world import BlocksWorld, DataError, read_set
-from latent.measure import encoder_rows, learnt_rows, observed_rows, open_bench, prediction_rows
+from latent.codes_measured import encoder_rows
+from latent.figures import noise_curves, noise_picture, plan_picture, saved
+from latent.measure import learnt_rows, observed_rows, prediction_rows, sample_plans
 from latent.trainings import ENCODER
 from results_file import Row, print_rows, quick, write_result
 
@@ -43,6 +46,7 @@ def main() -> int:
     except (DataError, PerceptionError, PlannerError) as error:
         print(f"cannot measure: {error}", file=sys.stderr)
         return 2
+    details["curves"] = {"noise": noise_curves(rows)}
     print_rows(rows)
     print(write_result("latent", "make eval-latent", rows, time.perf_counter() - begun, details))
     return 0
@@ -58,6 +62,8 @@ def measure(options: argparse.Namespace, details: dict[str, Any]) -> list[Row]:
     for folder in folders[: 1 if quick() else None]:
         found = details.setdefault(f"seed {folder.name}", {})
         of_seeds.append(of_seed(folder, sets, options.n or (20 if quick() else 200), found))
+    if not quick():
+        details["pictures"] = pictures(folders[0], sets)
     return together(of_seeds)
 
 
@@ -67,12 +73,31 @@ def of_seed(
     """Rows of one seed."""
     bench = open_bench(folder, load_encoder(folder / ENCODER), sets, tasks)
     details["file_kib"] = (folder / ENCODER).stat().st_size // 1024
-    searches = ("from both ends",) if quick() else ("from both ends", "A*", "breadth first")
+    searches = ("from both ends",) if quick() else ("from both ends", "A*")
     return [
         *encoder_rows(bench, 40 if quick() else 360),
         *observed_rows(bench, details),
         *prediction_rows(bench),
         *learnt_rows(bench, details, searches),
+    ]
+
+
+def pictures(folder: Path, sets: dict[str, BlocksWorld]) -> list[dict[str, str]]:
+    """Figures 4.7 and 4.8 on our data."""
+    bench = open_bench(folder, load_encoder(folder / ENCODER), sets, tasks=200)
+    image = bench.five.images[len(bench.five.images) // 2, 0]
+    return [
+        saved(
+            noise_picture(bench.encoder, image, TEST_SEED),
+            "latent_noise",
+            "Images under noise of α = 0.001 to 1 (Figure 4.7): given, what the code shows, what "
+            "the snapped code shows.",
+        ),
+        saved(
+            plan_picture(bench.encoder, sample_plans(bench, 5), 8),
+            "latent_plans",
+            "Plans of the learnt action model M2, as their codes show them (Figures 4.1 and 4.8).",
+        ),
     ]
 
 

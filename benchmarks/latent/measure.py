@@ -1,124 +1,51 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is measured of one seed's state encoder and action models, as rows of the result file."""
+"""What is measured of one seed's action models, as rows of the result file."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 from results_file import Row, wilson_interval
 
-from perception_node.latent.state_encoder import StateEncoder
 from planner_node.action_models import ObservedModel, StacksModel
 from planner_node.action_models.learnt import LearntModel, Snap, no_snap
 from planner_node.action_models.training import BITS, THESIS
 from planner_node.action_models.weights import load_action_model
-from planner_node.search.on_models import a_star_on, both_ends_on, breadth_first_on
+from planner_node.search.code_distance import CodeDistanceAStar
+from planner_node.search.on_models import (
+    ModelSearch,
+    NoModelPlanError,
+    both_ends_on,
+    breadth_first_on,
+)
 from scene_graph import Stacks
 
+from .bench import TEST_SEED, Bench
 from .blocks_world import MOVES, BlocksWorld
-from .planning import Plans, majority, pairs, plan_all
+from .planning import MAX_STATES, Plans, majority, pairs, plan_all
 from .prediction import Accuracy, CopyState, NearestTransition, Predict, accuracy
-from .stability import ALPHAS, changed_by_noise, reconstruction_error, uniqueness
-from .trainings import cached_codes, split
+from .trainings import split
 
 #: Thesis: accuracy of D and of π (4.2.2).
 THESIS_D: Final = 0.94
 THESIS_POLICY: Final = 0.65
-TEST_SEED: Final = 1000
 _FOUR: Final = "4 blocks, unseen"
 _FIVE: Final = "5 blocks, held out"
-_SEARCHES: Final = {
-    "breadth first": breadth_first_on,
-    "A*": a_star_on,
-    "from both ends": both_ends_on,
-}
 
 
-@dataclass(frozen=True)
-class Bench:
-    """What all measurements of one seed share.
-
-    Attributes:
-        folder: of the trained weights.
-        encoder: G.
-        train, four, five: the sets that models are trained on, and the two unseen ones.
-        codes: of the pictures of each set, by its name, shape (s, r, b).
-        tasks: number of pairs to plan for.
-    """
-
-    folder: Path
-    encoder: StateEncoder
-    train: BlocksWorld
-    four: BlocksWorld
-    five: BlocksWorld
-    codes: dict[str, NDArray[np.uint8]]
-    tasks: int
-
-
-def open_bench(
-    folder: Path, encoder: StateEncoder, sets: dict[str, BlocksWorld], tasks: int
-) -> Bench:
-    """Encodes all pictures, unless that was done before."""
-    codes = {name: cached_codes(folder, name, encoder, world) for name, world in sets.items()}
-    return Bench(folder, encoder, sets["train_5"], sets["test_4"], sets["test_5"], codes, tasks)
-
-
-def encoder_rows(bench: Bench, images: int) -> list[Row]:
-    """Uniqueness, stability, reconstruction and time of the codes."""
-    encoder, rows = bench.encoder, []
-    for name, world, label in (
-        ("train_5", bench.train, "5 blocks, all states"),
-        ("test_4", bench.four, "4 blocks, all states"),
-    ):
-        codes = bench.codes[name]
-        found = uniqueness(codes)
-        rows += [
-            Row(label, "states whose code no other state has", found.distinct, "", len(codes),
-                required="== 1", thesis=1.0),
-            Row(label, "bits between the two most similar states", found.nearest, "", len(codes)),
-            Row(label, "pictures with the code of their state's first picture", found.same, "",
-                codes.shape[0] * (codes.shape[1] - 1)),
-        ]  # fmt: skip
-        sample = world.images[:: max(1, len(world.images) // images), -1]
-        error = reconstruction_error(encoder, sample)
-        rows.append(Row(label, "reconstruction error", error, "", len(sample)))
-    sample = bench.five.images[:: max(1, len(bench.five.images) // images), 0]
-    for alpha in ALPHAS:
-        for snapped in (False, True):
-            places, codes_changed = changed_by_noise(encoder, sample, alpha, snapped, TEST_SEED)
-            kind = "snapped" if snapped else "as encoded"
-            bound = "<= 0.01" if snapped and alpha == 0.01 else None
-            rows.append(
-                Row(
-                    f"noise α = {alpha:g}",
-                    f"codes changed, {kind}",
-                    places,
-                    "",
-                    len(sample),
-                    required=bound,
-                    note=f"something changed in {codes_changed:.3f} of the images",
-                )
-            )
-    rows.append(_encoding_time(encoder, bench.five.images[:32, 0]))
-    return rows
-
-
-def _encoding_time(encoder: StateEncoder, images: NDArray[np.uint8]) -> Row:
-    seconds = []
-    for image in images:
-        begun = time.perf_counter()
-        encoder.encode(image[None])
-        seconds.append(time.perf_counter() - begun)
-    spread = (1e3 * min(seconds), 1e3 * max(seconds))
-    value = 1e3 * float(np.median(seconds))
-    return Row("one image", "encoding and snapping, median", value, "ms", len(images), spread,
-               required="<= 50")  # fmt: skip
+def searches(bench: Bench) -> dict[str, ModelSearch[bytes]]:
+    """By name; A* knows how many bits a move changes at most, as far as it was observed."""
+    world, codes = bench.train, bench.codes["train_5"][:, 0]
+    seen = split(world).seen
+    changed = np.unpackbits(codes[world.before[seen]] ^ codes[world.after[seen]], axis=1).sum(1)
+    return {
+        "from both ends": both_ends_on,
+        "A*": CodeDistanceAStar(int(changed.max())),
+        "breadth first": breadth_first_on,
+    }
 
 
 def observed_rows(bench: Bench, details: dict[str, Any]) -> list[Row]:
@@ -133,7 +60,7 @@ def observed_rows(bench: Bench, details: dict[str, Any]) -> list[Row]:
         real = {code.tobytes() for code in central}
         tasks = pairs(bench.tasks, len(central), TEST_SEED)
         lengths = shortest_lengths(world.layouts, tasks)
-        for name, search in _SEARCHES.items():
+        for name, search in searches(bench).items():
             plans = plan_all(
                 model, search, tasks, shown[:, 0], shown[:, -1], world.layouts, real, lengths
             )
@@ -178,28 +105,44 @@ def prediction_rows(bench: Bench) -> list[Row]:
     return rows
 
 
-def learnt_rows(bench: Bench, details: dict[str, Any], searches: Sequence[str]) -> list[Row]:
+def learnt_rows(bench: Bench, details: dict[str, Any], names: Sequence[str]) -> list[Row]:
     """Planning with M2 alone."""
-    rows = []
+    rows, found_by = [], searches(bench)
     for label, world, known, shown in _domains(bench):
         central = majority(known)
         real = {code.tobytes() for code in central}
         tasks = pairs(bench.tasks, len(central), TEST_SEED)
         lengths = shortest_lengths(world.layouts, tasks)
         for verify in (True, False):
-            for name in searches if verify else searches[:1]:
+            for name in names if verify else names[:1]:
                 snap = bench.encoder.snap if verify else no_snap
                 model = learnt_model(bench, BITS, snap, verify)
                 if model is None:
                     continue
                 plans = plan_all(
-                    model, _SEARCHES[name], tasks, shown[:, 0], shown[:, -1], world.layouts, real,
+                    model, found_by[name], tasks, shown[:, 0], shown[:, -1], world.layouts, real,
                     lengths,
                 )  # fmt: skip
                 kind = "M2" if verify else "M2 neither snapped nor verified"
                 rows += _plan_rows(f"{kind}, {label}", name, plans, ">= 0.9" if verify else None)
                 details[f"{kind}, {label}, {name}"] = plans.failures[:10]
     return rows
+
+
+def sample_plans(bench: Bench, count: int) -> list[tuple[bytes, ...]]:
+    """Codes along the longest plans of M2 among the first tasks on 5 blocks."""
+    model = learnt_model(bench, BITS, bench.encoder.snap)
+    if model is None:
+        return []
+    codes = bench.codes["test_5"][:, 0]
+    found = []
+    for start, goal in pairs(4 * count, len(codes), TEST_SEED).tolist():
+        try:
+            plan = both_ends_on(model, codes[start].tobytes(), codes[goal].tobytes(), MAX_STATES)
+        except NoModelPlanError:
+            continue
+        found.append(plan.states)
+    return sorted(found, key=len, reverse=True)[:count]
 
 
 def learnt_model(

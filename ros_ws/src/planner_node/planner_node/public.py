@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What ``planner_node`` exports; see there."""
 
-from .action_models import ActionModel, apply_to_graph
+from .action_models import (
+    ActionModel,
+    GraphModel,
+    ObservedModel,
+    StacksModel,
+    apply_to_graph,
+)
 from .errors import (
     AmbiguousObjectError,
     ArmStuckError,
