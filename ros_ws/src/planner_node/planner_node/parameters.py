@@ -8,7 +8,7 @@ from typing import Final
 from tamp_runtime.parameters import ParameterSpec
 
 from .search import ALGORITHMS, algorithm_named
-from .settings import Settings
+from .settings import REPRESENTATIONS, Settings
 
 _DEFAULTS: Final = Settings()
 
@@ -22,7 +22,22 @@ def _algorithm_problem(name: str) -> str:
     return ""
 
 
+def _representation_problem(name: str) -> str:
+    """one of planner_node.settings.REPRESENTATIONS"""
+    if name in REPRESENTATIONS:
+        return ""
+    return f"representation: there is no {name!r}; known: {', '.join(REPRESENTATIONS)}"
+
+
 PARAMETERS: Final = (
+    ParameterSpec(
+        "representation",
+        _DEFAULTS.representation,
+        f"What plans are made on: {', '.join(REPRESENTATIONS)}. latent takes goal images only and "
+        "plans on codes of pictures by a learnt action model, without segmentation.",
+        read_only=True,
+        check=_representation_problem,
+    ),
     ParameterSpec(
         "max_expansions",
         _DEFAULTS.max_expansions,

@@ -5,9 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from .search import AUTO, DEFAULT_MAX_EXPANSIONS
+
+#: What plans are made on: scene graphs, or codes of pictures.
+SCENE_GRAPH: Final = "scene_graph"
+LATENT: Final = "latent"
+REPRESENTATIONS: Final = (SCENE_GRAPH, LATENT)
 
 
 @dataclass
@@ -17,6 +22,7 @@ class Settings:
     What each means stands in :data:`planner_node.parameters.PARAMETERS`; times are in seconds.
     """
 
+    representation: str = SCENE_GRAPH
     max_expansions: int = DEFAULT_MAX_EXPANSIONS
     search_algorithm: str = AUTO
     min_confidence: float = 0.0

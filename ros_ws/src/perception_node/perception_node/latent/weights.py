@@ -23,6 +23,8 @@ from .state_encoder import EncoderConfig, StateEncoder
 #: Marks a file as ours, in its header.
 FORMAT: Final = "tamp state encoder G, version 1"
 
+#: The weights that ship with the package.
+DEFAULT_ENCODER: Final = Path(__file__).parents[1] / "weights" / "state_encoder.safetensors"
 _PARTS: Final = "parts."
 
 _RETRAIN: Final = "train new ones with `make train-latent`"

@@ -16,6 +16,8 @@ from ..errors import PlannerError
 from .effect_network import Discriminator, EffectConfig, EffectNetwork
 
 FORMAT: Final = "tamp action model M2, version 1"
+#: The weights that ship with the package.
+DEFAULT_ACTION_MODEL: Final = Path(__file__).parents[1] / "weights" / "action_model.safetensors"
 _RETRAIN: Final = "train new ones with `make train-latent`"
 
 
