@@ -30,7 +30,9 @@ from planner_node.action_models.weights import (
     load_action_model,
     save_action_model,
 )
-from scene_graph import all_moves
+from planner_node.latent_plans import LatentPlanner
+from planner_node.search.on_models import NoModelPlanError
+from scene_graph import Move, all_moves
 
 MOVES = all_moves(3)
 CONFIG = EffectConfig(bits=2, width=16, layers=1, heads=2, hidden=8)
@@ -143,3 +145,24 @@ def test_a_file_that_is_no_action_model_is_refused(tmp_path: Path, content: byte
         path.write_bytes(content)
     with pytest.raises(ModelWeightsError, match="train-latent"):
         load_action_model(path)
+
+
+def test_a_plan_between_pictures_is_one_between_their_codes() -> None:
+    trainer, seen = trained(), toy_transitions()
+    model = LearntModel(trainer.policy, trainer.discriminator, MOVES)
+    planner = LatentPlanner(lambda pictures: seen.codes[pictures[:, 0, 0, 0], 0], model)
+    pictures = [np.full((128, 128, 3), number, np.uint8) for number in range(3)]
+    plan = planner.plan(pictures[0], pictures[2])
+    assert plan.moves == (Move(0, 2),) and plan.confidence == 1.0
+    assert plan.codes == (seen.codes[0, 0].tobytes(), seen.codes[2, 0].tobytes())
+    assert planner.plan(pictures[1], pictures[1]).moves == ()
+
+
+def test_pictures_between_which_there_is_no_way_are_told() -> None:
+    trainer, seen = trained(), toy_transitions()
+    model = LearntModel(trainer.policy, trainer.discriminator, MOVES)
+    blank = np.zeros_like(seen.codes[0, 0])
+    planner = LatentPlanner(lambda _pictures: np.stack([seen.codes[0, 0], blank]), model)
+    picture = np.zeros((128, 128, 3), np.uint8)
+    with pytest.raises(NoModelPlanError):
+        planner.plan(picture, picture)

@@ -17,6 +17,7 @@ from planner_node.action_models import (
     StacksModel,
     apply_to_graph,
 )
+from planner_node.search.code_distance import CodeDistanceAStar
 from planner_node.search.on_models import (
     ModelPlan,
     NoModelPlanError,
@@ -109,6 +110,21 @@ def test_a_star_with_a_bound_on_what_is_left_stays_shortest_and_asks_less() -> N
     told = a_star_on(StacksModel(), start, goal, moves_left=elsewhere)
     assert len(told.moves) == len(blind.moves) == 4
     assert told.expanded < blind.expanded
+
+
+def test_codes_are_searched_by_how_many_bits_differ_from_the_goal() -> None:
+    """One move turns one of eight bits; only the first six can be turned back and forth."""
+    moves = all_moves(3)
+    table = [
+        (bytes([s]), moves[bit], bytes([s ^ (1 << bit)])) for s in range(64) for bit in range(6)
+    ]
+    model = ObservedModel(table)
+    informed = CodeDistanceAStar(1)(model, b"\x00", b"\x3f")
+    blind = breadth_first_on(model, b"\x00", b"\x3f")
+    assert len(informed.moves) == len(blind.moves) == 6
+    assert informed.expanded < blind.expanded
+    with pytest.raises(ValueError, match="one or more"):
+        CodeDistanceAStar(0)
 
 
 def test_states_that_share_a_code_are_refused() -> None:
