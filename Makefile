@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-perception eval-visual eval-tasks eval-faults eval-replay bench-motion bench-planner bench-sim data-latent train-latent eval-latent results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-perception eval-visual eval-tasks eval-faults eval-replay bench-motion bench-planner bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -44,6 +44,12 @@ train-latent: setup  ## state encoder and action models of Chapter 4; resumable;
 
 eval-latent: setup  ## codes, action models and planning on codes, all seeds that were trained; N= QUICK=1
 	@$(RUN) python benchmarks/eval_latent.py $(if $(N),--n $(N)) $(ARGS)
+
+eval-latent-qa: setup  ## questions about scenes, eq. 4.2 in its three settings; trains what is missing, resumable; ARGS=
+	@$(RUN) python benchmarks/eval_latent_qa.py $(ARGS)
+
+eval-latent-tasks: setup  ## goal images met in the simulator with representation latent; N= QUICK=1
+	@$(RUN) python benchmarks/eval_latent_tasks.py $(if $(N),--n $(N))
 
 eval-perception: setup  ## graphs right, accepted and refused, set by set; SET= N= JOBS= RESUME=1 QUICK=1
 	@$(RUN) python benchmarks/eval_perception.py $(if $(SET),--set "$(SET)") $(if $(N),--n $(N)) \
