@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``make eval-latent-tasks``: goal images met in the simulator through plan_to_goal, on codes alone.
+"""``make eval-latent-tasks``: goal images met in the simulator through plan_to_goal, on codes.
 
 The graph runs in this process. The planner's representation is latent: it gets the camera's picture
 and a goal image, no segmentation and no text; the ground truth judges.
@@ -37,6 +37,7 @@ from tamp_bringup.scene_observer import SceneObserver, true_stacks
 FIRST_SEED = 1000
 #: A task that is not done by then has failed [s].
 TIMEOUT = 300.0
+BUSY_TRIES = 240
 
 
 @dataclass(frozen=True)
@@ -83,6 +84,12 @@ def run_task(planner: PlannerClient, observer: SceneObserver, seed: int) -> Outc
     image = image_from_array(picture(goal, seed), "rgb8", Header())
     begun = time.monotonic()
     answer = planner.plan(goal_image=image, execute=True, timeout=60.0)
+    for _ in range(BUSY_TRIES):
+        if answer.status != answer.BUSY:
+            break
+        time.sleep(0.5)  # the arm still goes home after the task before
+        begun = time.monotonic()
+        answer = planner.plan(goal_image=image, execute=True, timeout=60.0)
     seconds = time.monotonic() - begun
     moves = len(answer.plan.moves)
     reached = False
@@ -102,8 +109,8 @@ def main() -> int:
     rows = [
         Row("goal images, 4 and 5 blocks", "tasks done through plan_to_goal", reached, "",
             len(outcomes), wilson_interval(reached, len(outcomes)), required=">= 18"),
-        Row("goal images, 4 and 5 blocks", "plan_to_goal answers, median", float(np.median(seconds)),
-            "s", len(seconds), (min(seconds), max(seconds))),
+        Row("goal images, 4 and 5 blocks", "plan_to_goal answers, median",
+            float(np.median(seconds)), "s", len(seconds), (min(seconds), max(seconds))),
     ]  # fmt: skip
     print_rows(rows)
     details: dict[str, Any] = {"outcomes": [vars(outcome) for outcome in outcomes]}
