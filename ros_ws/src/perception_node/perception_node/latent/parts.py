@@ -83,7 +83,7 @@ def find_parts(codes: NDArray[np.uint8], map_edge: int) -> Parts:
         mine = bits[:, chosen]
         apart = (mine[first] != mine[second]).sum(axis=1)
         radius = max(1, int(np.quantile(apart, _SAME)))
-        patterns = _patterns(mine, radius)
+        patterns = _without_aliases(_patterns(mine, radius), mine, first, second)
         if len(patterns) > 1:
             parts.append(Part(chosen, patterns, radius))
         else:
@@ -119,6 +119,27 @@ def _patterns(bits: Bits, radius: int) -> Bits:
         if len(mine) >= _LEAST_SEEN:
             kept.append(mine.mean(axis=0) > 0.5)
     return np.unique(np.stack(kept or [centres[0]]), axis=0)
+
+
+def _without_aliases(
+    patterns: Bits, bits: Bits, first: NDArray[np.int64], second: NDArray[np.int64]
+) -> Bits:
+    """Without patterns whose states mostly show another one in their other pictures.
+
+    The rarest is left out first, since what it stood for may be what keeps another one.
+    """
+    while len(patterns) > 1:
+        nearest, _ = _nearest(bits, patterns)
+        together = np.zeros((len(patterns), len(patterns)), np.int64)
+        np.add.at(together, (nearest[first], nearest[second]), 1)
+        together += together.T
+        own = np.diagonal(together).copy()
+        np.fill_diagonal(together, -1)
+        aliases = np.flatnonzero(own <= together.max(axis=1))
+        if not len(aliases):
+            break
+        patterns = np.delete(patterns, aliases[own[aliases].argmin()], axis=0)
+    return patterns
 
 
 def _nearest(bits: Bits, patterns: Bits) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
