@@ -63,8 +63,8 @@ def train(options: argparse.Namespace) -> None:
     if options.action_steps == 0:
         return
     codes = cached_codes(options.run, "train_5", encoder, world)
-    seen = transitions_of(codes, world, split(world).seen)
-    effect = EffectConfig(bits=encoder.quantiser.bits)
+    seen = transitions_of(encoder, codes, world, split(world).seen)
+    effect = EffectConfig()
     for objective in options.objectives:
         config = ActionTraining(effect, objective, steps=options.action_steps, seed=options.seed)
         print(train_action_model(options.run / objective, seen, config))
@@ -81,14 +81,14 @@ def _parse() -> argparse.Namespace:
     parser.add_argument("--quantiser", choices=QUANTISERS, default="binary", help="of the encoder")
     parser.add_argument("--channels", type=int, choices=CHANNELS, default=8, help="o")
     parser.add_argument("--width", type=int, default=24, help="of the encoder's layers")
-    parser.add_argument("--steps", type=int, default=3000, help="of the encoder")
+    parser.add_argument("--steps", type=int, default=1500, help="of the encoder")
     parser.add_argument(
         "--stable",
         action=argparse.BooleanOptionalAction,
         default=True,
         help="ask for one code of all pictures of a state",
     )
-    parser.add_argument("--action-steps", type=int, default=4000, help="of the action model")
+    parser.add_argument("--action-steps", type=int, default=2500, help="of the action model")
     parser.add_argument(
         "--objectives", nargs="+", choices=OBJECTIVES, default=list(OBJECTIVES), help="of π"
     )

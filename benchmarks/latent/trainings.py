@@ -101,11 +101,17 @@ def cached_codes(folder: Path, name: str, encoder: StateEncoder, world: BlocksWo
     return codes
 
 
-def transitions_of(codes: NDArray[np.uint8], world: BlocksWorld, seen: NDArray) -> Transitions:
+def transitions_of(
+    encoder: StateEncoder, codes: NDArray[np.uint8], world: BlocksWorld, seen: NDArray
+) -> Transitions:
     """What an action model is trained on; which layout a state is, is not among it."""
+    assert encoder.parts is not None
+    parts = tuple(part.bits for part in encoder.parts.parts)
     possible = np.zeros((len(codes), len(MOVES)), np.bool_)
     possible[world.before, world.move] = True
-    return Transitions(codes, world.before[seen], world.move[seen], world.after[seen], possible)
+    return Transitions(
+        codes, world.before[seen], world.move[seen], world.after[seen], possible, parts
+    )
 
 
 def train_action_model(folder: Path, seen: Transitions, config: ActionTraining) -> Path:

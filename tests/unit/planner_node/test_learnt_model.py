@@ -14,8 +14,6 @@ from planner_node.action_models.effect_network import (
     Discriminator,
     EffectConfig,
     EffectNetwork,
-    bits_of_patches,
-    patches_of,
 )
 from planner_node.action_models.learnt import LearntModel
 from planner_node.action_models.training import (
@@ -35,20 +33,22 @@ from planner_node.search.on_models import NoModelPlanError
 from scene_graph import Move, all_moves
 
 MOVES = all_moves(3)
-CONFIG = EffectConfig(bits=2, width=16, layers=1, heads=2, hidden=8)
+CONFIG = EffectConfig(width=16, layers=1, heads=2, hidden=8)
+#: Three places of 24 bits each, in a code of 160.
+PARTS = tuple(np.arange(8 + 40 * place, 32 + 40 * place) for place in range(3))
 
 
 def toy_transitions(renders: int = 1) -> Transitions:
-    """Three moments: a mark in one of three patches, that moves between them."""
-    bits = np.zeros((3, renders, 2, 32, 32), np.uint8)
+    """Three moments: a mark in one of three places, that moves between them."""
+    bits = np.zeros((3, renders, 160), np.uint8)
     for place in range(3):
-        bits[place, :, :, 4:8, 8 * place : 8 * place + 4] = 1
-    codes = np.packbits(bits.reshape(3, renders, -1), axis=2)
+        bits[place, :, PARTS[place]] = 1
+    codes = np.packbits(bits, axis=2)
     before = np.array([move.source for move in MOVES])
     after = np.array([move.target for move in MOVES])
     possible = np.zeros((3, 6), np.bool_)
     possible[before, np.arange(6)] = True
-    return Transitions(codes, before, np.arange(6), after, possible)
+    return Transitions(codes, before, np.arange(6), after, possible, PARTS)
 
 
 def trained(steps: int = 150, **changes: object) -> ActionTrainer:
@@ -58,21 +58,22 @@ def trained(steps: int = 150, **changes: object) -> ActionTrainer:
     return trainer
 
 
-def test_patches_are_the_code_in_another_order() -> None:
-    bits = torch.arange(2 * 3 * 32 * 32).reshape(2, 3, 32, 32).float()
-    patches = patches_of(bits)
-    assert torch.equal(bits_of_patches(patches), bits)
-    assert set(patches[0, 9].long().tolist()) == set(bits[0, :, 4:8, 4:8].flatten().long().tolist())
-
-
-def test_patches_that_never_change_are_copied() -> None:
+def test_bits_of_no_part_are_copied() -> None:
     trainer = ActionTrainer(toy_transitions(), ActionTraining(CONFIG))
-    assert trainer.policy.active.sum() == 3
-    bits = torch.randint(2, (4, 2, 32, 32)).float()
-    after, margin = trainer.policy.after(bits, torch.zeros(4, dtype=torch.long))
-    still = ~trainer.policy.active
-    assert torch.equal(patches_of(after)[:, still], patches_of(bits)[:, still])
-    assert margin.shape == (4,)
+    bits = torch.randint(2, (4, 160)).float()
+    after = trainer.policy.after(bits, torch.zeros(4, dtype=torch.long))
+    around = np.setdiff1d(np.arange(160), np.concatenate(PARTS))
+    assert torch.equal(after[:, around], bits[:, around])
+
+
+def test_what_no_action_touches_is_swapped_before_and_after_alike() -> None:
+    """So that where two parts matter, what a third one holds is learnt not to."""
+    trainer = ActionTrainer(toy_transitions(), ActionTraining(CONFIG, swaps=1.0))
+    before, after = trainer._drawn(np.zeros(64, np.int64)), trainer._drawn(np.ones(64, np.int64))
+    was, becomes = trainer._swapped(before, after)
+    assert torch.equal(was[:, :48], before[:, :48]) and torch.equal(becomes[:, :48], after[:, :48])
+    assert torch.equal(was[:, 48:], becomes[:, 48:])
+    assert 0 < int(was[:, 48:].any(1).sum()) < 64
 
 
 def test_transitions_are_learnt_from_codes_alone() -> None:
@@ -127,15 +128,13 @@ def test_a_training_goes_on_from_its_checkpoint_as_if_it_had_not_stopped(tmp_pat
 
 def test_weights_come_back_as_they_were(tmp_path: Path) -> None:
     path = tmp_path / "model.safetensors"
-    active = torch.zeros(64, dtype=torch.bool)
-    active[:5] = True
-    policy, discriminator = EffectNetwork(CONFIG, active), Discriminator(CONFIG, active)
+    policy, discriminator = EffectNetwork(CONFIG, PARTS), Discriminator(CONFIG, PARTS)
     save_action_model(policy, discriminator, path, {"commit": "none"})
     loaded, judge = load_action_model(path)
-    patches = torch.randint(2, (3, 5, CONFIG.values)).float()
+    values = torch.randint(2, (3, 72)).float()
     moves = torch.tensor([0, 3, 5])
-    assert torch.equal(loaded(patches, moves), policy.eval()(patches, moves))
-    assert torch.equal(judge(patches), discriminator(patches))
+    assert torch.equal(loaded(values, moves), policy.eval()(values, moves))
+    assert torch.equal(judge(values), discriminator(values))
 
 
 @pytest.mark.parametrize("content", [None, b"", b"nonsense" * 10])

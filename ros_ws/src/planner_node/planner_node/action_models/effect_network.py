@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """The networks of the learnt action model M2 (4.2.2): what a move does to a code, and which can be.
 
-The code is cut into patches of 4 x 4 places. Patches whose bits no training picture ever changed
-are copied. The others are tokens of a transformer: what comes to a place depends on what is there
-and on what is taken from elsewhere, wherever that is, and so it can look there.
+The code has parts that change by themselves, found without labels. Each part is a token of a
+transformer, read by weights of its own into a language that all of them share, in which what an
+action takes from one and gives to another is learnt once. Bits of no part are copied.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor, nn
 
-#: Edges of the latent map and of a patch, in places.
-MAP: Final = 32
-PATCH: Final = 4
 #: How sure a bit is of staying what it is before anything was learnt.
 _COPY_LOGIT: Final = 2.0
 
@@ -26,104 +26,97 @@ class EffectConfig:
     """What the networks are like.
 
     Attributes:
-        bits: of the code at each place.
         moves: number of actions in A.
         width, layers, heads: of the transformer.
         hidden: of the discriminator.
     """
 
-    bits: int = 8
     moves: int = 6
-    width: int = 96
+    width: int = 128
     layers: int = 3
     heads: int = 4
     hidden: int = 64
 
+
+class _Parts(nn.Module):
+    """Which bits of a code belong to parts, and how many to each."""
+
+    index: Tensor
+    sizes: Tensor
+
+    def __init__(self, parts: Sequence[NDArray[np.int64]]) -> None:
+        super().__init__()
+        self.register_buffer("index", torch.from_numpy(np.concatenate(parts).astype(np.int64)))
+        self.register_buffer("sizes", torch.tensor([len(part) for part in parts]))
+
     @property
-    def values(self) -> int:
-        """Bits of a patch."""
-        return self.bits * PATCH * PATCH
+    def lengths(self) -> list[int]:
+        """Bits of each part."""
+        lengths: list[int] = self.sizes.tolist()
+        return lengths
 
 
-def patches_of(bits: Tensor) -> Tensor:
-    """Bits (n, b, 32, 32) as patches (n, 64, b · 16)."""
-    return nn.functional.pixel_unshuffle(bits, PATCH).flatten(2).transpose(1, 2)
-
-
-def bits_of_patches(patches: Tensor) -> Tensor:
-    """The inverse of :func:`patches_of`."""
-    side = MAP // PATCH
-    return nn.functional.pixel_shuffle(patches.transpose(1, 2).unflatten(2, (side, side)), PATCH)
-
-
-class EffectNetwork(nn.Module):
-    """π: the bits after a move, as logits. Patches that never change are not asked about.
+class EffectNetwork(_Parts):
+    """π: the bits of all parts after a move, as logits.
 
     Args:
-        active: which patches ever change, shape (64,) bool.
+        parts: the bits of each part, as indices into a code.
     """
 
-    active: Tensor
-
-    def __init__(self, config: EffectConfig, active: Tensor) -> None:
-        super().__init__()
+    def __init__(self, config: EffectConfig, parts: Sequence[NDArray[np.int64]]) -> None:
+        super().__init__(parts)
         self.config = config
-        self.register_buffer("active", active.bool())
-        tokens = int(active.sum())
-        self.read = nn.Linear(config.values, config.width)
-        self.where = nn.Parameter(0.02 * torch.randn(1, tokens, config.width))
-        self.action = nn.Embedding(config.moves, config.width)
-        self.place = nn.Parameter(0.02 * torch.randn(config.moves, tokens, config.width))
+        width, lengths = config.width, self.lengths
+        self.read = nn.ModuleList(nn.Linear(length, width) for length in lengths)
+        self.write = nn.ModuleList(nn.Linear(width, length) for length in lengths)
+        #: What an action means to each part.
+        self.action = nn.Parameter(0.3 * torch.randn(config.moves, len(lengths), width))
         layer = nn.TransformerEncoderLayer(
-            config.width,
+            width,
             config.heads,
-            2 * config.width,
+            4 * width,
             dropout=0.0,
             activation="gelu",
             batch_first=True,
             norm_first=True,
         )
         self.layers = nn.TransformerEncoder(layer, config.layers, enable_nested_tensor=False)
-        self.write = nn.Linear(config.width, config.values)
         self.copy = nn.Parameter(torch.tensor(_COPY_LOGIT))
 
-    def forward(self, patches: Tensor, moves: Tensor) -> Tensor:
-        """Active patches (n, t, v) of 0 and 1, and actions (n,) -> logits (n, t, v)."""
-        signs = 2.0 * patches - 1.0
-        tokens = self.read(signs) + self.where
-        tokens = tokens + self.action(moves)[:, None] + self.place[moves]
-        logits: Tensor = self.write(self.layers(tokens)) + self.copy * signs
+    def forward(self, values: Tensor, moves: Tensor) -> Tensor:
+        """Bits of all parts (n, m), 0 and 1, and actions (n,) -> logits (n, m)."""
+        signs = 2.0 * values - 1.0
+        each = signs.split(self.lengths, dim=1)
+        tokens = torch.stack([read(part) for read, part in zip(self.read, each)], dim=1)
+        tokens = self.layers(tokens + self.action[moves])
+        written = [write(tokens[:, number]) for number, write in enumerate(self.write)]
+        logits: Tensor = torch.cat(written, dim=1) + self.copy * signs
         return logits
 
-    def after(self, bits: Tensor, moves: Tensor) -> tuple[Tensor, Tensor]:
-        """Bits (n, b, 32, 32) and actions (n,) -> the bits after, and the least margin (n,)."""
-        patches = patches_of(bits).clone()
-        logits = self(patches[:, self.active], moves)
-        patches[:, self.active] = (logits > 0.0).to(patches.dtype)
-        return bits_of_patches(patches), logits.abs().flatten(1).amin(1)
+    def after(self, bits: Tensor, moves: Tensor) -> Tensor:
+        """What moves do: bits (n, b) and actions (n,) -> bits (n, b)."""
+        changed = bits.clone()
+        changed[:, self.index] = (self(bits[:, self.index], moves) > 0.0).to(bits.dtype)
+        return changed
 
 
-class Discriminator(nn.Module):
+class Discriminator(_Parts):
     """D: which actions are possible in a state, as logits."""
 
-    active: Tensor
-
-    def __init__(self, config: EffectConfig, active: Tensor) -> None:
-        super().__init__()
-        self.register_buffer("active", active.bool())
+    def __init__(self, config: EffectConfig, parts: Sequence[NDArray[np.int64]]) -> None:
+        super().__init__(parts)
         self.layers = nn.Sequential(
-            nn.Flatten(),
-            nn.Linear(int(active.sum()) * config.values, config.hidden),
+            nn.Linear(len(self.index), config.hidden),
             nn.SiLU(),
             nn.Linear(config.hidden, config.moves),
         )
 
-    def forward(self, patches: Tensor) -> Tensor:
-        """Active patches (n, t, v) of 0 and 1 -> logits (n, |A|)."""
-        logits: Tensor = self.layers(2.0 * patches - 1.0)
+    def forward(self, values: Tensor) -> Tensor:
+        """Bits of all parts (n, m), 0 and 1 -> logits (n, |A|)."""
+        logits: Tensor = self.layers(2.0 * values - 1.0)
         return logits
 
     def possible(self, bits: Tensor) -> Tensor:
-        """Which actions are possible: bits (n, b, 32, 32) -> (n, |A|) bool."""
-        possible: Tensor = self(patches_of(bits)[:, self.active]) > 0.0
+        """Which actions are possible: bits (n, b) -> (n, |A|) bool."""
+        possible: Tensor = self(bits[:, self.index]) > 0.0
         return possible

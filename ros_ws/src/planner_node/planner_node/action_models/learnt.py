@@ -17,7 +17,7 @@ from torch import Tensor
 
 from scene_graph import Move
 
-from .effect_network import MAP, Discriminator, EffectNetwork
+from .effect_network import Discriminator, EffectNetwork
 
 #: Packed codes (n, b).
 Codes = NDArray[np.uint8]
@@ -114,12 +114,11 @@ class LearntModel:
         parts = [np.zeros((0, codes.shape[1]), np.uint8)]
         for start in range(0, len(codes), _BATCH):
             part = slice(start, start + _BATCH)
-            bits, _ = self._policy.after(
+            bits = self._policy.after(
                 self._unpack(codes[part]), torch.from_numpy(actions[part].astype(np.int64))
             )
-            parts.append(np.packbits(bits.flatten(1).numpy().astype(np.bool_), axis=1))
+            parts.append(np.packbits(bits.numpy().astype(np.bool_), axis=1))
         return np.concatenate(parts)
 
     def _unpack(self, codes: Codes) -> Tensor:
-        bits = np.unpackbits(codes, axis=1).reshape(len(codes), -1, MAP, MAP)
-        return torch.from_numpy(bits).float()
+        return torch.from_numpy(np.unpackbits(codes, axis=1)).float()

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from ..errors import PlannerError
-from .effect_network import MAP, PATCH, Discriminator, EffectConfig, EffectNetwork, patches_of
+from .effect_network import Discriminator, EffectConfig, EffectNetwork
 
 #: What π is trained on: eq. 4.3, or the cross-entropy of every bit.
 THESIS: Final = "thesis"
@@ -37,6 +37,7 @@ class Transitions:
         codes: packed, shape (s, r, b): r pictures of each of s moments.
         before, action, after: which action led from which moment to which, shape (t,).
         possible: which actions were possible at each moment, shape (s, |A|).
+        parts: bits that change by themselves, as indices into a code.
     """
 
     codes: NDArray[np.uint8]
@@ -44,6 +45,7 @@ class Transitions:
     action: NDArray[np.int64]
     after: NDArray[np.int64]
     possible: NDArray[np.bool_]
+    parts: tuple[NDArray[np.int64], ...]
 
 
 @dataclass(frozen=True)
@@ -58,17 +60,20 @@ class ActionTraining:
         learning_rate: peak of a one-cycle schedule.
         changed: weight of bits that the action changes, beside 1 for the others.
         flips: share of bits of the input that are turned.
+        swaps: share of parts that an action left alone that are given another content, before and
+            after it: what does not change is taken to be of no influence.
         checkpoint_every: steps between checkpoints.
         seed: of weights and batches.
     """
 
     effect: EffectConfig = field(default_factory=EffectConfig)
     objective: str = BITS
-    steps: int = 4000
-    batch: int = 64
-    learning_rate: float = 1.5e-3
+    steps: int = 3000
+    batch: int = 128
+    learning_rate: float = 1e-3
     changed: float = 4.0
     flips: float = 0.002
+    swaps: float = 0.5
     checkpoint_every: int = 200
     seed: int = 0
 
@@ -79,11 +84,10 @@ class ActionTrainer:
     def __init__(self, seen: Transitions, config: ActionTraining) -> None:
         self.config, self.seen = config, seen
         torch.manual_seed(config.seed)
-        self.patches = self._patches(seen.codes)
-        active = active_patches(self.patches)
-        self.patches = self.patches[:, :, active]
-        self.policy = EffectNetwork(config.effect, active)
-        self.discriminator = Discriminator(config.effect, active)
+        self.policy = EffectNetwork(config.effect, seen.parts)
+        self.discriminator = Discriminator(config.effect, seen.parts)
+        index = self.policy.index.numpy()
+        self._values = torch.from_numpy(np.unpackbits(seen.codes, axis=2)[:, :, index])
         parameters = [*self.policy.parameters(), *self.discriminator.parameters()]
         self.optimizer = torch.optim.AdamW(
             parameters, lr=config.learning_rate, weight_decay=0.01, betas=(0.9, 0.98)
@@ -122,14 +126,13 @@ class ActionTrainer:
         picked = torch.randint(len(seen.before), (self.config.batch,), generator=self.rng).numpy()
         before = self._drawn(seen.before[picked])
         after = self._drawn(seen.after[picked])
-        flipped = torch.rand(before.shape, generator=self.rng) < self.config.flips
-        given = torch.where(flipped, 1.0 - before, before)
-        logits = self.policy(given, torch.from_numpy(seen.action[picked]))
-        of_policy = self._policy_loss(logits, before, after)
         possible = torch.from_numpy(seen.possible[seen.before[picked]]).float()
         of_discriminator = torch.nn.functional.binary_cross_entropy_with_logits(
-            self.discriminator(given), possible
+            self.discriminator(self._flipped(before)), possible
         )  # eq. 4.4
+        before, after = self._swapped(before, after)
+        logits = self.policy(self._flipped(before), torch.from_numpy(seen.action[picked]))
+        of_policy = self._policy_loss(logits, before, after)
         self.optimizer.zero_grad(set_to_none=True)
         (of_policy + of_discriminator).backward()
         torch.nn.utils.clip_grad_norm_(self.policy.parameters(), 1.0)
@@ -148,16 +151,30 @@ class ActionTrainer:
         return torch.nn.functional.binary_cross_entropy_with_logits(logits, after, weights)
 
     def _drawn(self, states: NDArray[np.int64]) -> Tensor:
-        """Active patches (n, t, v) of one picture each of some moments."""
-        renders = self.patches.shape[1]
+        """Bits of all parts (n, m) of one picture each of some moments."""
+        renders = self._values.shape[1]
         drawn = torch.randint(renders, (len(states),), generator=self.rng)
-        return self.patches[torch.from_numpy(states), drawn].float()
+        return self._values[torch.from_numpy(states), drawn].float()
 
-    def _patches(self, codes: NDArray[np.uint8]) -> Tensor:
-        """Patches (s, r, 64, v) of 0 and 1, as bytes."""
-        bits = torch.from_numpy(np.unpackbits(codes, axis=2))
-        maps = bits.unflatten(2, (-1, MAP, MAP)).flatten(0, 1)
-        return patches_of(maps).unflatten(0, codes.shape[:2])
+    def _flipped(self, values: Tensor) -> Tensor:
+        turned = torch.rand(values.shape, generator=self.rng) < self.config.flips
+        return torch.where(turned, 1.0 - values, values)
+
+    def _swapped(self, before: Tensor, after: Tensor) -> tuple[Tensor, Tensor]:
+        """Parts that are the same before and after, some with the content of another moment."""
+        if self.config.swaps == 0.0 or self.config.objective == THESIS:
+            return before, after
+        others = self._drawn(
+            torch.randint(len(self._values), (len(before),), generator=self.rng).numpy()
+        )
+        lengths = self.policy.lengths
+        parts = zip(*(values.split(lengths, dim=1) for values in (before, after, others)))
+        swapped = []
+        for was, becomes, other in parts:
+            drawn = torch.rand(len(was), 1, generator=self.rng) < self.config.swaps
+            free = drawn & (was == becomes).all(1, keepdim=True)
+            swapped.append((torch.where(free, other, was), torch.where(free, other, becomes)))
+        return torch.cat([w for w, _ in swapped], 1), torch.cat([b for _, b in swapped], 1)
 
     def save(self, path: Path) -> None:
         """Writes the whole state of the run; the old file is replaced once the new one is there."""
@@ -187,7 +204,7 @@ class ActionTrainer:
         except Exception as error:  # torch reports damage by a dozen types
             raise CheckpointError(f"checkpoint {path} is damaged ({error}); delete it") from error
         same = state["config"] == asdict(self.config)
-        if not same or not torch.equal(state["policy"]["active"], self.policy.active):
+        if not same or not torch.equal(state["policy"]["index"], self.policy.index):
             raise CheckpointError(
                 f"checkpoint {path} belongs to a run with other hyper-parameters or other codes; "
                 "use another folder, or delete it"
@@ -198,13 +215,3 @@ class ActionTrainer:
         self.schedule.load_state_dict(state["schedule"])
         self.rng.set_state(state["rng"])
         self.step, self.seconds = int(state["step"]), float(state["seconds"])
-
-
-def active_patches(patches: Tensor) -> Tensor:
-    """Which of the patches (s, r, 64, v) are not the same in all pictures, shape (64,)."""
-    first = patches[:1, :1]
-    changing = torch.zeros(patches.shape[2], dtype=torch.bool)
-    for part in patches.split(64):
-        changing |= (part != first).any(3).flatten(0, 1).any(0)
-    assert len(changing) == (MAP // PATCH) ** 2
-    return changing

@@ -9,6 +9,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Final
 
+import numpy as np
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save_file
 
@@ -54,8 +55,9 @@ def load_action_model(path: Path) -> tuple[EffectNetwork, Discriminator]:
         if header.get("format") != FORMAT:
             raise ModelWeightsError(f"weights file {path} holds no action model; {_RETRAIN}")
         config = EffectConfig(**json.loads(header["config"]))
-        active = tensors["policy.active"]
-        policy, discriminator = EffectNetwork(config, active), Discriminator(config, active)
+        lengths = tensors["policy.sizes"].tolist()
+        parts = np.split(tensors["policy.index"].numpy(), np.cumsum(lengths)[:-1])
+        policy, discriminator = EffectNetwork(config, parts), Discriminator(config, parts)
         for prefix, network in (("policy.", policy), ("discriminator.", discriminator)):
             network.load_state_dict(
                 {k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)}
