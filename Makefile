@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-planner bench-sim results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-planner bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -35,6 +35,21 @@ soak-tests: setup  ## the suite again and again, half of them on a busy machine;
 train-visual: setup  ## train the visual module G without labels; resumable
 	@$(RUN) ros2 run sim_node render_dataset --out data/states_5 --blocks 5
 	@$(RUN) ros2 run perception_node train_visual --data data/states_5 $(ARGS)
+
+data-latent: setup  ## pictures, transitions and questions of Chapter 4; resumable; ARGS=
+	@$(RUN) python benchmarks/render_latent.py $(ARGS)
+
+train-latent: setup  ## state encoder and action models of Chapter 4; resumable; SEED= ARGS=
+	@$(RUN) python benchmarks/train_latent.py $(if $(SEED),--seed $(SEED) --run runs/latent/$(SEED)) $(ARGS)
+
+eval-latent: setup  ## codes, action models and planning on codes, all seeds that were trained; N= QUICK=1
+	@$(RUN) python benchmarks/eval_latent.py $(if $(N),--n $(N)) $(ARGS)
+
+eval-latent-qa: setup  ## questions about scenes, eq. 4.2 in its three settings; trains what is missing, resumable; ARGS=
+	@$(RUN) python benchmarks/eval_latent_qa.py $(ARGS)
+
+eval-latent-tasks: setup  ## goal images met in the simulator with representation latent; N= QUICK=1
+	@$(RUN) python benchmarks/eval_latent_tasks.py $(if $(N),--n $(N))
 
 eval-perception: setup  ## graphs right, accepted and refused, set by set; SET= N= JOBS= RESUME=1 QUICK=1
 	@$(RUN) python benchmarks/eval_perception.py $(if $(SET),--set "$(SET)") $(if $(N),--n $(N)) \

@@ -15,6 +15,8 @@ from matplotlib.patches import Patch
 #: What the machine does before the arm moves; the rest of a task is execution.
 THINKING: Final = ("perceive", "plan", "motion")
 _COLORS: Final = {"perceive": "#4c72b0", "plan": "#dd8452", "motion": "#8172b3"}
+#: Shares down to 1e-4 are told apart; zero can be drawn.
+_SCALES: Final[dict[str, dict[str, float]]] = {"x": {}, "y": {"linthresh": 1e-4}}
 _SUCCEEDED: Final = "#55a868"
 _FAILED: Final = "#c44e52"
 #: Of more tasks only every tenth can be named below its bar.
@@ -25,18 +27,46 @@ def plot_result(result: Mapping[str, Any], folder: Path) -> list[Path]:
     """Draws what a result file has details for; equal results give equal files.
 
     Returns:
-        The files written: ``NAME.svg`` where the details list timed tasks, else none.
+        The files written: ``NAME.svg`` where the details list timed tasks, and ``NAME_CURVES.svg``
+        for each of their curves.
     """
-    tasks = (result.get("details") or {}).get("tasks")
-    if not tasks or any("timing_s" not in task for task in tasks):
-        return []
-    figure = draw_tasks(tasks)
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{result['name']}.svg"
+    details = result.get("details") or {}
+    figures = {
+        f"{result['name']}_{name}": draw_curves(curves)
+        for name, curves in details.get("curves", {}).items()
+    }
+    tasks = details.get("tasks")
+    if tasks and all("timing_s" in task for task in tasks):
+        figures[result["name"]] = draw_tasks(tasks)
+    return [_saved(figure, folder / f"{name}.svg") for name, figure in figures.items()]
+
+
+def _saved(figure: Figure, path: Path) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
     # Without date and with fixed identifiers, so that an unchanged result is an unchanged file.
-    with matplotlib.rc_context({"svg.hashsalt": result["name"]}):
+    with matplotlib.rc_context({"svg.hashsalt": path.stem}):
         figure.savefig(path, metadata={"Date": None})
-    return [path]
+    return path
+
+
+def draw_curves(curves: Mapping[str, Any]) -> Figure:
+    """Lines of one picture: ``x``, ``y`` and ``title`` name it, ``log`` which axes are so.
+
+    ``lines`` has for each label its points, [x, y] each.
+    """
+    figure = Figure(figsize=(6.0, 3.6), layout="constrained")
+    axes = figure.subplots()
+    for name, points in curves["lines"].items():
+        xs, ys = zip(*points)
+        axes.plot(xs, ys, marker="o", markersize=3.0, label=name)
+    for axis in curves.get("log", ""):
+        getattr(axes, f"set_{axis}scale")("log" if axis == "x" else "symlog", **_SCALES[axis])
+    axes.set_title(curves["title"])
+    axes.set_xlabel(curves["x"])
+    axes.set_ylabel(curves["y"])
+    axes.grid(alpha=0.3)
+    axes.legend(frameon=False, fontsize=8)
+    return figure
 
 
 def draw_tasks(tasks: Sequence[Mapping[str, Any]]) -> Figure:

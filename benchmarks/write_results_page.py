@@ -125,6 +125,8 @@ def section(result: Mapping[str, Any], plots: Sequence[str]) -> list[str]:
     for plot in plots:
         lines += ["", f"![{result['name']}]({plot})"]
     details = result.get("details", {})
+    for picture in details.get("pictures", []):
+        lines += ["", picture["text"], "", f"![{picture['text']}]({picture['file']})"]
     if failures := details.get("failure_table"):
         lines += ["", *failure_table(failures)]
     if refused := details.get("refused"):

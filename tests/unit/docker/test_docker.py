@@ -44,7 +44,7 @@ ROSDEP_KEYS = {
     "yaml": "python3-yaml",
 }
 #: rosdep has no key for these; the packages' manifests say so in a comment.
-WITHOUT_KEY = {"safetensors"}
+WITHOUT_KEY = {"safetensors", "vector_quantize_pytorch"}
 
 
 @pytest.fixture(scope="module")

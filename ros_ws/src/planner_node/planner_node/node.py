@@ -9,7 +9,7 @@ import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.action.server import ServerGoalHandle
@@ -42,7 +42,10 @@ from .loop.account import in_the_view
 from .parameters import PARAMETERS
 from .plan_publisher import PlanPublisher
 from .search import make_plan
-from .settings import Settings
+from .settings import LATENT, Settings
+
+if TYPE_CHECKING:
+    from .latent_view import LatentView
 
 #: achieve_goal, plan_to_goal with a goal image, a refused second goal, and what they wait for.
 THREADS = 4
@@ -90,6 +93,7 @@ class PlannerNode(Node):
         self._scenes = SceneWatch(self._settings, plans.now)
         self._motion = MotionLink(self._settings, plans, plans.now)
         self._images = ImageClient(self, self._settings)
+        self._latent = self._latent_view()
         self._claim_lock = threading.Lock()
         self._claim: _Claim | None = None
         self._presence = Presence(self, "planner_node")
@@ -151,9 +155,7 @@ class PlannerNode(Node):
     def _plan_to_goal(self, request: PlanToGoal.Request, response: PlanToGoal.Response) -> None:
         self._check_conflict()
         self._check_free(self._motion.check_free)
-        resolve = read_goal(
-            request, functools.partial(self._images.interpret, cancelled=self._is_shut_down)
-        )
+        resolve = self._read_goal(request, self._is_shut_down)
         try:
             scene = self._scenes.latest(self._motion.last_end)
         except NotConfidentError as error:
@@ -162,15 +164,18 @@ class PlannerNode(Node):
                     f"{error}; {clause}; achieve_goal brings it home"
                 ) from error
             raise
-        goal = resolve(scene.stacks)
-        settings = self._settings
-        found = make_plan(
-            scene.stacks,
-            goal,
-            settings.max_expansions,
-            self._is_shut_down,
-            settings.search_algorithm,
-        )
+        if self._latent is not None:
+            goal, found = self._latent.plan(request, scene.stacks)
+        else:
+            goal = resolve(scene.stacks)
+            settings = self._settings
+            found = make_plan(
+                scene.stacks,
+                goal,
+                settings.max_expansions,
+                self._is_shut_down,
+                settings.search_algorithm,
+            )
         plan = plan_for(scene, goal, found, self._scenes.now())
         response.expanded, response.planning_seconds = found.expanded, found.seconds
         response.plan, response.states = plan_to_message(plan), predicted_to_messages(plan)
@@ -197,9 +202,7 @@ class PlannerNode(Node):
             handle.publish_feedback(feedback.message(progress))
 
         def read() -> Callable[[Stacks], Goal]:
-            return read_goal(
-                request, functools.partial(self._images.interpret, cancelled=cancelled)
-            )
+            return self._read_goal(request, cancelled)
 
         motion, conflict = self._motion, self._presence.conflict
         loop = ClosedLoop(
@@ -218,6 +221,21 @@ class PlannerNode(Node):
             outcome = loop.give_up(Status.INTERNAL_ERROR, message, "planner")
         self._finish(handle, outcome)
         return outcome_to_message(outcome)
+
+    def _read_goal(self, request: Any, cancelled: Callable[[], bool]) -> Callable[[Stacks], Goal]:
+        """Of pictures as codes the goal is the state that their plan leads to."""
+        latent = self._latent
+        if latent is not None:
+            return lambda seen: latent.plan(request, seen)[0]
+        return read_goal(request, functools.partial(self._images.interpret, cancelled=cancelled))
+
+    def _latent_view(self) -> LatentView | None:
+        """What plans on codes of pictures, where the parameters ask for it."""
+        if self._settings.representation != LATENT:
+            return None
+        from .latent_view import LatentView  # PyTorch, which nothing else here needs
+
+        return LatentView(self, self._settings)
 
     def _finish(self, handle: ServerGoalHandle, outcome: Outcome) -> None:
         """Sets the goal's end; nobody is left to be told while the node is shut down."""

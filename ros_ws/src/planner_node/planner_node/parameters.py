@@ -8,7 +8,7 @@ from typing import Final
 from tamp_runtime.parameters import ParameterSpec
 
 from .search import ALGORITHMS, algorithm_named
-from .settings import EACH_MOVE, END, VERIFY, WATCH, Settings
+from .settings import EACH_MOVE, END, REPRESENTATIONS, VERIFY, WATCH, Settings
 
 _DEFAULTS: Final = Settings()
 
@@ -27,7 +27,22 @@ def _verify_problem(name: str) -> str:
     return "" if name in VERIFY else f"verify = {name!r}; there are {', '.join(VERIFY)}"
 
 
+def _representation_problem(name: str) -> str:
+    """one of planner_node.settings.REPRESENTATIONS"""
+    if name in REPRESENTATIONS:
+        return ""
+    return f"representation: there is no {name!r}; known: {', '.join(REPRESENTATIONS)}"
+
+
 PARAMETERS: Final = (
+    ParameterSpec(
+        "representation",
+        _DEFAULTS.representation,
+        f"What plans are made on: {', '.join(REPRESENTATIONS)}. latent takes goal images only and "
+        "plans on codes of pictures by a learnt action model, without segmentation.",
+        read_only=True,
+        check=_representation_problem,
+    ),
     ParameterSpec(
         "max_expansions",
         _DEFAULTS.max_expansions,

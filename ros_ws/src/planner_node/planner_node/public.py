@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What ``planner_node`` exports; see there."""
 
-from .action_models import ActionModel, apply_to_graph
+from .action_models import (
+    ActionModel,
+    GraphModel,
+    ObservedModel,
+    StacksModel,
+    apply_to_graph,
+)
 from .errors import (
     AmbiguousObjectError,
     ArmStuckError,
@@ -65,6 +71,7 @@ __all__ = [
     "ContradictoryGoalError",
     "Goal",
     "GoalImageError",
+    "GraphModel",
     "InvalidGoalError",
     "Limits",
     "MotionBusyError",
@@ -74,6 +81,7 @@ __all__ = [
     "NoSceneGraphError",
     "NotConfidentError",
     "ObjectLostError",
+    "ObservedModel",
     "Outcome",
     "Plan",
     "PlanTopic",
@@ -89,6 +97,7 @@ __all__ = [
     "SearchResult",
     "Settings",
     "Sighting",
+    "StacksModel",
     "Stage",
     "State",
     "Status",

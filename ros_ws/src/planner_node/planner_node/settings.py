@@ -15,6 +15,10 @@ END: Final = "end"
 EACH_MOVE: Final = "each_move"
 WATCH: Final = "watch"
 VERIFY: Final = (END, EACH_MOVE, WATCH)
+#: What plans are made on: scene graphs, or codes of pictures.
+SCENE_GRAPH: Final = "scene_graph"
+LATENT: Final = "latent"
+REPRESENTATIONS: Final = (SCENE_GRAPH, LATENT)
 
 
 @dataclass
@@ -24,6 +28,7 @@ class Settings:
     What each means stands in :data:`planner_node.parameters.PARAMETERS`; times are in seconds.
     """
 
+    representation: str = SCENE_GRAPH
     max_expansions: int = DEFAULT_MAX_EXPANSIONS
     search_algorithm: str = AUTO
     min_confidence: float = 0.0

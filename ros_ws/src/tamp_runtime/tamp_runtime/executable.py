@@ -26,6 +26,7 @@ PIP_NAMES: Final[Mapping[str, str]] = {
     "safetensors": "safetensors",
     "torch": "torch",
     "torchvision": "torchvision",
+    "vector_quantize_pytorch": "vector-quantize-pytorch",
 }
 
 

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Action models M: what a move does to a scene graph (A.2.3)."""
+"""Action models M: what a move does to a state (4.2.2, A.2.3). The learnt ones need PyTorch."""
 
-from collections.abc import Callable
+from .interface import ActionModel
+from .observed import AmbiguousTransitionError, ObservedModel
+from .on_stacks import StacksModel
+from .oracular import GraphModel, apply_to_graph
 
-from scene_graph import Move, Relation
-
-from .oracular import apply_to_graph
-
-#: The relations after a move, from those before it; raises ImpossibleMoveError.
-ActionModel = Callable[[frozenset[Relation], Move], frozenset[Relation]]
-
-__all__ = ["ActionModel", "apply_to_graph"]
+__all__ = [
+    "ActionModel",
+    "AmbiguousTransitionError",
+    "GraphModel",
+    "ObservedModel",
+    "StacksModel",
+    "apply_to_graph",
+]

@@ -6,7 +6,12 @@ Its form on stacks is :func:`scene_graph.apply_move`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from scene_graph import UP, ImpossibleMoveError, Move, Relation, base_index, base_name
+
+#: The relations after a move, from those before it; raises ImpossibleMoveError.
+GraphModel = Callable[[frozenset[Relation], Move], frozenset[Relation]]
 
 
 def apply_to_graph(relations: frozenset[Relation], move: Move) -> frozenset[Relation]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from scene_graph import Move, SceneGraph, SceneObject, Stacks, up_relations
 
-from ..action_models import ActionModel, apply_to_graph
+from ..action_models import GraphModel, apply_to_graph
 from ..goals.goal import Goal
 from ..search import SearchResult
 from .scene import Scene
@@ -56,7 +56,7 @@ def plan_for(scene: Scene, goal: Goal, found: SearchResult, stamp: int) -> Plan:
     )
 
 
-def _predicted(scene: Scene, moves: Sequence[Move], model: ActionModel) -> tuple[SceneGraph, ...]:
+def _predicted(scene: Scene, moves: Sequence[Move], model: GraphModel) -> tuple[SceneGraph, ...]:
     """The scene after each move, by an action model M; nobody has seen it yet."""
     objects = tuple(
         SceneObject(item.name, item.color, item.shape, size=item.size, confidence=0.0)

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``make eval-latent-qa``: Table 4.1 and Figure 4.9 on our scenes; trains what is not trained yet.
+
+Ctrl-C saves and stops; the same command goes on from there.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+import torch
+from latent.blocks_world import DataError
+from latent.clevr.dataset import read_clevr
+from latent.qa_training import baseline_rows, qa_rows, train_qa
+from latent.trainings import StoppedError
+from results_file import Row, print_rows, write_result
+
+from perception_node.errors import PerceptionError
+from perception_node.latent.answering import ANSWERERS
+from perception_node.latent.qa_trainer import SETTINGS, QaConfig
+from perception_node.latent.state_encoder import CHANNELS, EncoderConfig
+
+
+def main() -> int:
+    """Exit code 0 when done, 130 when stopped by Ctrl-C, 2 when it cannot start."""
+    options = _parse()
+    torch.set_num_threads(options.threads)
+    begun = time.perf_counter()
+    try:
+        rows = measure(options)
+    except (DataError, PerceptionError) as error:
+        print(f"cannot measure: {error}", file=sys.stderr)
+        return 2
+    except (StoppedError, KeyboardInterrupt):
+        print("stopped; the same command goes on from there")
+        return 130
+    print_rows(rows)
+    print(write_result("latent_qa", "make eval-latent-qa", rows, time.perf_counter() - begun))
+    return 0
+
+
+def measure(options: argparse.Namespace) -> list[Row]:
+    """Trains and measures every setting and size that was asked for."""
+    train, test = (read_clevr(options.data / f"clevr_{name}") for name in ("train", "test"))
+    rows = baseline_rows(train, test)
+    for channels in options.channels:
+        for setting in options.settings:
+            config = QaConfig(
+                EncoderConfig(options.quantiser, channels, options.width),
+                setting,
+                options.answerer,
+                epochs=options.epochs,
+                seed=options.seed,
+            )
+            folder = options.runs / f"{setting}_{channels}_{options.answerer}_{options.seed}"
+            rows += qa_rows(train_qa(folder, train, config), train, test)
+    return rows
+
+
+def _parse() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter
+    )
+    parser.add_argument("--data", type=Path, default=Path("data/latent"), help="folder of the sets")
+    parser.add_argument("--runs", type=Path, default=Path("runs/latent_qa"), help="of trainings")
+    parser.add_argument("--settings", nargs="+", choices=SETTINGS, default=list(SETTINGS))
+    parser.add_argument("--channels", nargs="+", type=int, choices=CHANNELS, default=[64])
+    parser.add_argument("--answerer", choices=ANSWERERS, default="film")
+    parser.add_argument("--quantiser", default="binary", help="of the encoder")
+    parser.add_argument("--width", type=int, default=24, help="of the encoder's layers")
+    parser.add_argument("--epochs", type=int, default=30, help="passes over the images")
+    parser.add_argument("--threads", type=int, default=2, help="processor threads")
+    parser.add_argument("--seed", type=int, default=0, help="of weights and batches")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The trainings of Table 4.1 and Figure 4.9: state encoder and answerer, by setting and size."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from results_file import Row
+
+from perception_node.latent.qa_trainer import QaConfig, QaTrainer
+
+from .clevr.asked import (
+    Vocabulary,
+    all_questions,
+    answered,
+    asked_of,
+    shares_right,
+    without_picture,
+)
+from .clevr.dataset import ClevrSet
+from .progress import progress
+from .stability import reconstruction_error
+from .trainings import CHECKPOINT, StoppedError
+
+#: Thesis, Table 4.1: QA accuracy and reconstruction error, and what is required of them here.
+TABLE: Final[dict[str, tuple[float, float, str | None, str | None]]] = {
+    "kl": (0.932923, 0.118789, ">= 0.955", None),
+    "reconstruction": (0.676227, 0.000464, None, "<= 0.00046"),
+    "both": (0.931829, 0.002303, ">= 0.955", "<= 0.0023"),
+}
+
+
+def train_qa(folder: Path, train: ClevrSet, config: QaConfig) -> QaTrainer:
+    """A trained run of a folder, gone on with or taken as it is.
+
+    Raises:
+        StoppedError: by Ctrl-C.
+        WeightsError: the folder holds another run.
+    """
+    vocabulary = Vocabulary.of(train)
+    told = {**asdict(config), "words": len(vocabulary.words), "answers": len(vocabulary.answers)}
+    config = QaConfig(**{**told, "encoder": config.encoder})
+    trainer = QaTrainer(asked_of(train, vocabulary), config)
+    checkpoint = folder / CHECKPOINT
+    if checkpoint.exists():
+        trainer.resume(checkpoint)
+    title = f"questions ({config.setting}, o = {config.encoder.channels})"
+    with progress(title, trainer.steps, trainer.step, folder / "log.txt") as shown:
+        if not trainer.run(shown.show, checkpoint):
+            raise StoppedError
+    return trainer
+
+
+def baseline_rows(train: ClevrSet, test: ClevrSet) -> list[Row]:
+    """What is answered without looking."""
+    questions = all_questions(test)
+    return [
+        Row("questions", f"QA accuracy, {name}", shares_right(given, questions)[0], "",
+            len(questions))
+        for name, given in without_picture(train, test).items()
+    ]  # fmt: skip
+
+
+def qa_rows(trainer: QaTrainer, train: ClevrSet, test: ClevrSet) -> list[Row]:
+    """A line of Table 4.1, with the accuracy of each family in its note."""
+    config, vocabulary = trainer.config, Vocabulary.of(train)
+    asked, questions = asked_of(test, vocabulary), all_questions(test)
+    label = f"{config.setting}, o = {config.encoder.channels}"
+    full = config.encoder.channels == 64
+    accuracy, error, bound, error_bound = TABLE[config.setting]
+    rows = []
+    for what, encoder in (("from codes", trainer.encoder), ("from images", None)):
+        numbers = answered(encoder, trainer.answerer, asked)
+        given = [vocabulary.answers[number] for number in numbers]
+        share, families = shares_right(given, questions)
+        rows.append(
+            Row(label, f"QA accuracy, {what} ({config.answerer})", share, "", len(questions),
+                required=bound if encoder and full else None,
+                thesis=accuracy if encoder and full else None,
+                note="; ".join(f"{name} {value:.3f}" for name, value in families.items()))
+        )  # fmt: skip
+    found = reconstruction_error(trainer.encoder.eval(), test.images)
+    rows.append(
+        Row(label, "reconstruction error", found, "", len(test.images),
+            required=error_bound if full else None, thesis=error if full else None,
+            note=f"{np.round(trainer.seconds)} s of training")
+    )  # fmt: skip
+    return rows
