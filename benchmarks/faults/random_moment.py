@@ -18,7 +18,13 @@ from faults.catalogue import faults_named
 from faults.disturbances import Disturbed
 from faults.fault import Ending, Fault
 from faults.judge import ending_of, holds
-from faults.noticing import carried_between, grasps_lost, noticed_at, noticed_in_time
+from faults.noticing import (
+    carried_between,
+    grasps_after,
+    grasps_lost,
+    noticed_at,
+    noticed_in_time,
+)
 from faults.setting import Setting
 from scene_graph import SceneGraph, Stacks
 from sim_node.cli.client import DisturbClient
@@ -85,6 +91,7 @@ class MomentResult:
         named: whether a refusal names one of the blocks that it was about; True where none is.
         in_time: whether it was noticed before the next grasp; None where neither came.
         latency: from the moment until it was noticed, in simulated time [s].
+        until_grasp: from the moment until the next grasp, if there was one, likewise.
         grasps_lost, replans, stops: over the task.
         simulated_seconds: from the request to the answer.
     """
@@ -105,6 +112,7 @@ class MomentResult:
     causes: tuple[str, ...] = ()
     in_time: bool | None = None
     latency: float | None = None
+    until_grasp: float | None = None
     grasps_lost: int = 0
     replans: int = 0
     stops: int = 0
@@ -258,6 +266,7 @@ def _judged(
         return result
     passed = 1 if result.kind in ("slip", "jam") else 0  # they spoil a grasp themselves
     at = noticed_at(reports, stops, disturbance.stamp)
+    later = grasps_after(reports, disturbance.stamp, passed)
     refused = result.ending in (Ending.REFUSED.value, Ending.WRONG_SENTENCE.value)
     sentence = answer.sentence if answer else ""
     named = not refused or not disturbance.blocks or any(
@@ -273,6 +282,7 @@ def _judged(
         named=named,
         in_time=noticed_in_time(reports, stops, disturbance.stamp, passed),
         latency=None if at is None else round((at - disturbance.stamp) / 1e9, 2),
+        until_grasp=round((later[0] - disturbance.stamp) / 1e9, 2) if later else None,
     )
 
 
