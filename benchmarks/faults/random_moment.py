@@ -54,6 +54,8 @@ _AGAIN: Final = 0.1
 #: An answer is overdue after, and one to a cancel then [s].
 ANSWER_SECONDS: Final = 240.0
 CANCEL_SECONDS: Final = 30.0
+#: Until a perception_node that has just started says something, on a busy machine [s].
+GRAPH_SECONDS: Final = 60.0
 
 
 def fault_of(kind: str) -> Fault:
@@ -132,6 +134,7 @@ def run_at_random_moment(
     task, eyes = draw_task(family_of(BLOCKS), seed), setting.eyes
     setting.processes.check()
     eyes.reset(task.layout)
+    eyes.wait_for_graph(GRAPH_SECONDS)
     eyes.set_parameter("planner_node", "verify", verify)
     eyes.forget_motion()
     setting.goal, setting.initial, setting.seed = task.goal, task.layout, seed
