@@ -64,16 +64,21 @@ def _goes_home_early(report: MotionReport) -> bool:
     return going and report.moves_done < report.moves_total
 
 
+def grasps_after(reports: Iterable[MotionReport], after: int, passed: int = 0) -> list[int]:
+    """When blocks were taken after a moment [ns].
+
+    Args:
+        passed: the first of them, as many as belong to what happened: a block slips out of the
+            hand that has just taken it, or fingers that are jammed do not take it.
+    """
+    return [stamp for stamp in grasps(reports) if stamp > after][passed:]
+
+
 def noticed_in_time(
     reports: Sequence[MotionReport], stops: Iterable[int], after: int, passed: int = 0
 ) -> bool | None:
-    """Whether it was noticed before the next grasp; None where neither came.
-
-    Args:
-        passed: of the grasps after the moment, so many belong to what happened: a block slips
-            out of the hand that has just taken it, or fingers that are jammed do not take it.
-    """
-    later = [stamp for stamp in grasps(reports) if stamp > after][passed:]
+    """Whether it was noticed before the next grasp; None where neither came."""
+    later = grasps_after(reports, after, passed)
     noticed = noticed_at(reports, stops, after)
     if noticed is None:
         return False if later else None

@@ -18,7 +18,13 @@ from faults.catalogue import faults_named
 from faults.disturbances import Disturbed
 from faults.fault import Ending, Fault
 from faults.judge import ending_of, holds
-from faults.noticing import carried_between, grasps_lost, noticed_at, noticed_in_time
+from faults.noticing import (
+    carried_between,
+    grasps_after,
+    grasps_lost,
+    noticed_at,
+    noticed_in_time,
+)
 from faults.setting import Setting
 from scene_graph import SceneGraph, Stacks
 from sim_node.cli.client import DisturbClient
@@ -48,6 +54,8 @@ _AGAIN: Final = 0.1
 #: An answer is overdue after, and one to a cancel then [s].
 ANSWER_SECONDS: Final = 240.0
 CANCEL_SECONDS: Final = 30.0
+#: Until a perception_node that has just started says something, on a busy machine [s].
+GRAPH_SECONDS: Final = 60.0
 
 
 def fault_of(kind: str) -> Fault:
@@ -85,6 +93,7 @@ class MomentResult:
         named: whether a refusal names one of the blocks that it was about; True where none is.
         in_time: whether it was noticed before the next grasp; None where neither came.
         latency: from the moment until it was noticed, in simulated time [s].
+        until_grasp: from the moment until the next grasp, if there was one, likewise.
         grasps_lost, replans, stops: over the task.
         simulated_seconds: from the request to the answer.
     """
@@ -105,6 +114,7 @@ class MomentResult:
     causes: tuple[str, ...] = ()
     in_time: bool | None = None
     latency: float | None = None
+    until_grasp: float | None = None
     grasps_lost: int = 0
     replans: int = 0
     stops: int = 0
@@ -124,6 +134,7 @@ def run_at_random_moment(
     task, eyes = draw_task(family_of(BLOCKS), seed), setting.eyes
     setting.processes.check()
     eyes.reset(task.layout)
+    eyes.wait_for_graph(GRAPH_SECONDS)
     eyes.set_parameter("planner_node", "verify", verify)
     eyes.forget_motion()
     setting.goal, setting.initial, setting.seed = task.goal, task.layout, seed
@@ -258,6 +269,7 @@ def _judged(
         return result
     passed = 1 if result.kind in ("slip", "jam") else 0  # they spoil a grasp themselves
     at = noticed_at(reports, stops, disturbance.stamp)
+    later = grasps_after(reports, disturbance.stamp, passed)
     refused = result.ending in (Ending.REFUSED.value, Ending.WRONG_SENTENCE.value)
     sentence = answer.sentence if answer else ""
     named = not refused or not disturbance.blocks or any(
@@ -273,6 +285,7 @@ def _judged(
         named=named,
         in_time=noticed_in_time(reports, stops, disturbance.stamp, passed),
         latency=None if at is None else round((at - disturbance.stamp) / 1e9, 2),
+        until_grasp=round((later[0] - disturbance.stamp) / 1e9, 2) if later else None,
     )
 
 

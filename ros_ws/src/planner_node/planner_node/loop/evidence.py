@@ -92,15 +92,17 @@ class Evidence:
         self._suspicions: dict[str, Suspicion] = {}
         self._fresh: set[str] = set()  # of the newest frame
 
-    def weigh(self, sighting: Sighting, steps: range) -> Suspicion | None:
-        """Takes a frame; returns what is certain by now, None if nothing is.
+    def weigh(self, sighting: Sighting, steps: range) -> tuple[Suspicion, ...]:
+        """Takes a frame; returns what is certain by now, and what else more than one frame says.
+
+        Nothing is returned while nothing is certain.
 
         Args:
             steps: those of the plan that may have been under way, at least one.
         """
         graph = sighting.graph
         if not graph.objects:
-            return None
+            return ()
         self._fresh.clear()
         seen = {item.name: item for item in graph.objects}
         states = [self.expectation.at(step) for step in steps]
@@ -154,15 +156,18 @@ class Evidence:
         else:
             self._suspicions[finding.name] = Suspicion(finding, before.frames + 1, before.step)
 
-    def _certain(self, status: GraphStatus, about_to_rise: str) -> Suspicion | None:
+    def _certain(self, status: GraphStatus, about_to_rise: str) -> tuple[Suspicion, ...]:
         certain = [
             item
             for name, item in self._suspicions.items()
             if name in self._fresh
             and item.frames >= self._needed(item.finding, status, about_to_rise)
         ]
-        # Where one is elsewhere, others may be missing or foreign only because of it.
-        return min(certain, key=lambda item: list(Kind).index(item.finding.kind), default=None)
+        if not certain:
+            return ()
+        others = [item for item in self._suspicions.values()
+                  if item.frames > 1 and item not in certain]  # fmt: skip
+        return (*certain, *others)
 
     def _needed(self, finding: Finding, status: GraphStatus, about_to_rise: str) -> int:
         if status is GraphStatus.CONFIDENT:

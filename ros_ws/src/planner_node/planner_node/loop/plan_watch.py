@@ -45,8 +45,8 @@ class PlanWatch:
             return False
         self._newest = sighting.stamp
         steps = self._timeline.steps_at(sighting.stamp)
-        if (certain := self._evidence.weigh(sighting, steps)) is not None:
-            self.contradiction = self._sentence(certain, sighting.graph)
+        told = self._evidence.weigh(sighting, steps)
+        self.contradiction = "; ".join(self._clause(item, sighting.graph) for item in told)
         return bool(self.contradiction)
 
     def is_as_predicted(self, scene: Scene, moves_done: int) -> bool:
@@ -57,10 +57,10 @@ class PlanWatch:
             rest is not None and rest.holds(seen[name]) for name, rest in expected.items()
         )
 
-    def _sentence(self, certain: Suspicion, graph: SceneGraph) -> str:
-        finding, moves = certain.finding, len(self._plan.moves)
-        if certain.step < 2 * moves:
-            since = f"since move {certain.step // 2 + 1} of {moves}"
+    def _clause(self, item: Suspicion, graph: SceneGraph) -> str:
+        finding, moves = item.finding, len(self._plan.moves)
+        if item.step < 2 * moves:
+            since = f"since move {item.step // 2 + 1} of {moves}"
         else:
             since = "since the last move"
         name, rest, seen = finding.name, finding.expected, _where(finding, graph)
