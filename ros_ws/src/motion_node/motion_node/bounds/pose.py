@@ -91,32 +91,7 @@ class Poses:
         lean away from it, which is another valley than the upright one; so the elbow is swung to
         either side in steps, unless upright configurations serve for all switches.
         """
-        inverse = self._inverse
-        positions, directions, near = self._seeds(phases)
-        upright = inverse.solve(positions, directions, near)
-
-        def score(configurations: Array) -> Array:
-            missed = np.abs(inverse.residual(configurations, positions)).max(axis=1)
-            return np.round(self._problems.excess(configurations, demands) + 10 * missed, 3)
-
-        found = [[Guess(q, float(s))] for q, s in zip(upright, score(upright))]
-        if all(own[0].score == 0.0 for own in found):
-            return found
-        seeding = self._problems.model.arm.seeding
-        starts = [(directions, upright), *self._other_starts(positions, directions, near)]
-        for toward, start in starts:
-            for side in (1.0, -1.0):
-                q = start
-                for step in range(seeding.swings):
-                    swung = q + side * seeding.swing_step * inverse.self_motion(q)
-                    q = inverse.solve(positions, toward, swung, iterations=8)
-                    for own, configuration, value in zip(found, q, score(q)):
-                        own.append(Guess(configuration, float(value), step + 1))
-        return [sorted(own, key=lambda guess: (guess.score, guess.swing)) for own in found]
-
-    def _seeds(self, phases: Sequence[Phase]) -> tuple[Array, Array, Array]:
-        """Positions (k, 3), directions of the fingers (k,) and configurations to start at (k, n)."""
-        model = self._problems.model
+        model, inverse = self._problems.model, self._inverse
         switches = [phase.switch for phase in phases if phase.switch]
         positions = np.array([switch.position_world for switch in switches])
         near, directions = model.arm.seeding.turned(
@@ -127,10 +102,21 @@ class Poses:
             model.lower,
             model.upper,
         )
-        return positions, directions, near
+        upright = inverse.solve(positions, directions, near)
 
-    def _other_starts(
-        self, positions: Array, directions: Array, near: Array
-    ) -> list[tuple[Array, Array]]:
-        """Further directions of the fingers (k,), and configurations (k, n) to swing from."""
-        return []
+        def score(configurations: Array) -> Array:
+            missed = np.abs(inverse.residual(configurations, positions)).max(axis=1)
+            return np.round(self._problems.excess(configurations, demands) + 10 * missed, 3)
+
+        found = [[Guess(q, float(s))] for q, s in zip(upright, score(upright))]
+        if all(own[0].score == 0.0 for own in found):
+            return found
+        seeding = model.arm.seeding
+        for side in (1.0, -1.0):
+            q = upright
+            for step in range(seeding.swings):
+                swung = q + side * seeding.swing_step * inverse.self_motion(q)
+                q = inverse.solve(positions, directions, swung, iterations=8)
+                for own, configuration, value in zip(found, q, score(q)):
+                    own.append(Guess(configuration, float(value), step + 1))
+        return [sorted(own, key=lambda guess: (guess.score, guess.swing)) for own in found]

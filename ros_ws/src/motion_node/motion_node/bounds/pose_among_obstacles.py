@@ -54,16 +54,6 @@ class PosesAmongObstacles(Poses):
         demands = self._problems.demands([phase], clear)
         return self._verdict(phase, self._guesses([phase], demands)[0], demands, clear).excludes
 
-    def _other_starts(
-        self, positions: Array, directions: Array, near: Array
-    ) -> list[tuple[Array, Array]]:
-        """The same grasps with the hand half a turn about, which leaves the elbow other room."""
-        model = self._problems.model
-        turned = near.copy()
-        turned[:, -1] -= np.copysign(np.pi, near[:, -1] - (model.lower[-1] + model.upper[-1]) / 2)
-        around = directions + np.pi
-        return [(around, self._inverse.solve(positions, around, turned))]
-
     def _try(self, guesses: Sequence[Guess], demands: Sequence[Demand]) -> Array | None:
         if guesses[0].score == 0.0:
             return guesses[0].q
