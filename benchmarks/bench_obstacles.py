@@ -107,7 +107,7 @@ KINDS: Final[tuple[Callable[[np.random.Generator], Table], ...]] = (walls, reach
 
 @dataclass
 class Result:
-    """What came out of one table."""
+    """What came out of one table; ``seconds`` of the processor, one thread."""
 
     table: Table
     solvable: bool
@@ -143,9 +143,9 @@ def one(planner: MotionPlanner, seed: int) -> Result | None:
                 continue
             solvable = reachable.solvable(stacks, goal)
             planner.surround(table.obstacles)
-            begin = time.perf_counter()
+            begin = time.process_time()
             came_to = plan_geometrically(planner, table.graph, table.goal)
-            seconds = time.perf_counter() - begin
+            seconds = time.process_time() - begin
             least = oracle.touched(came_to.motion) if came_to.motion else np.inf
             return Result(table, solvable, came_to, seconds, least)
         finally:
@@ -178,7 +178,7 @@ def rows_of(results: list[Result]) -> list[Row]:
     return [
         *rows,
         Row("all", "time, plans and motions and verdicts, median", float(np.median(times)), "s",
-            len(times), (min(times), max(times))),
+            len(times), (min(times), max(times)), note="of the processor, one thread"),
         Row("all", "time, longest", max(times), "s", len(times), required="<= 1"),
         Row("all", "moves excluded a scene, mean", float(np.mean(excluded)), "", len(times),
             (min(excluded), max(excluded))),

@@ -65,7 +65,7 @@ def test_a_wall_is_passed_over_or_round(
 
 def test_posts_and_turned_walls_are_passed(surrounded: MotionPlanner) -> None:
     post = Obstacle("post", (0.04, 0.04, 0.4), (0.6, -0.1, 0.2), round=True)
-    turned = wall(0.42, 0.1, 0.2, 0.3, yaw=0.6)
+    turned = wall(0.45, 0.095, 0.12, 0.12, yaw=0.3)
     graph = scene((2, 1, 0), places=WIDE)
     moved(surrounded, graph, [Move(0, 2), Move(1, 2), Move(0, 1)], [post, turned])
 

@@ -159,7 +159,9 @@ def _boxes(columns: Sequence[Column], obstacles: Sequence[Obstacle], floor: floa
     return _Boxes(np.array(centers), np.array(halves), np.array(yaws))
 
 
-def _overlap(centers: Array, half: Array, yaw: float, boxes: _Boxes, margin: float) -> Array:
+def _overlap(
+    centers: Array, half: Array, yaw: float, boxes: _Boxes, margin: float
+) -> NDArray[np.bool_]:
     """Whether a box (3,) of some yaw is nearer than a margin to any box, by its centres (n, 3)."""
     found = np.zeros(len(centers), dtype=bool)
     for center, other, turn in zip(boxes.centers, boxes.halves, boxes.yaws):

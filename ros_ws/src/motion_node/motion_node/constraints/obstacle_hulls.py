@@ -81,7 +81,7 @@ class HandPart:
     """
 
     def __init__(
-        self, model: ArmModel, half: ca.SX | tuple[float, float], upper: ca.SX, lower: ca.SX
+        self, model: ArmModel, half: Sequence[ca.SX | float], upper: ca.SX, lower: ca.SX
     ) -> None:
         self._rotation, position = model.hand_pose
         self._half = ca.vertcat(half[0], half[1], (lower - upper) / 2)
