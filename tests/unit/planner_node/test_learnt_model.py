@@ -103,7 +103,12 @@ def test_what_the_inverse_move_does_not_undo_is_dropped() -> None:
 def test_the_objective_of_the_thesis_can_be_trained_on() -> None:
     trainer = ActionTrainer(toy_transitions(2), ActionTraining(CONFIG, THESIS, steps=30))
     losses: list[float] = []
-    trainer.run(lambda _step, policy, _possible: losses.append(policy) is None)
+
+    def on_step(_step: int, policy: float, _possible: float) -> bool:
+        losses.append(policy)
+        return True
+
+    trainer.run(on_step)
     assert np.mean(losses[-5:]) < np.mean(losses[:5])
 
 
