@@ -21,7 +21,7 @@ from latent.bench import TEST_SEED, open_bench
 from latent.blocks_world import BlocksWorld, DataError, read_set
 from latent.codes_measured import encoder_rows
 from latent.figures import noise_curves, noise_picture, plan_picture, saved
-from latent.measure import learnt_rows, observed_rows, prediction_rows, sample_plans
+from latent.measure import cold_rows, learnt_rows, observed_rows, prediction_rows, sample_plans
 from latent.trainings import ENCODER
 from results_file import Row, print_rows, quick, write_result
 
@@ -79,6 +79,7 @@ def of_seed(
         *observed_rows(bench, details),
         *prediction_rows(bench),
         *learnt_rows(bench, details, searches),
+        *cold_rows(bench),
     ]
 
 

@@ -104,8 +104,8 @@ def random_scene(rng: np.random.Generator, least: int = 3, most: int = 6) -> Sce
 
 
 def _draw(rng: np.random.Generator, scene: Sequence[Thing]) -> Thing | None:
-    words = {name: str(rng.choice(values)) for name, values in ATTRIBUTES.items()}
-    edge = EDGES[words["size"]]
+    size, color, shape = (str(rng.choice(values)) for values in ATTRIBUTES.values())
+    edge = EDGES[size]
     yaw = float(rng.uniform(-0.5, 0.5))
     below = int(rng.integers(len(scene))) if scene and rng.random() < _ON_TOP else -1
     if below >= 0:
@@ -116,11 +116,11 @@ def _draw(rng: np.random.Generator, scene: Sequence[Thing]) -> Thing | None:
             return None
         x, y, z = support.position_world
         height = z + 0.5 * EDGES[support.size] + 0.5 * edge
-        return Thing(**words, position_world=(x, y, height), yaw=yaw, on=below)
+        return Thing(size, color, shape, (x, y, height), yaw, below)
     x, y = (float(rng.uniform(*span)) for span in _AREA)
     for other in scene:
         if other.on < 0:
             dx, dy = abs(x - other.position_world[0]), abs(y - other.position_world[1])
             if min(dx, dy) < _CLEAR or np.hypot(dx, dy) < _APART:
                 return None
-    return Thing(**words, position_world=(x, y, 0.5 * edge), yaw=yaw)
+    return Thing(size, color, shape, (x, y, 0.5 * edge), yaw)

@@ -51,7 +51,12 @@ def test_a_question_is_answered_alike_whatever_is_asked_beside_it(name: str) -> 
 def test_each_setting_trains_what_it_names(setting: str) -> None:
     trainer = QaTrainer(asked(), config(setting=setting, epochs=1))
     told: list[dict[str, float]] = []
-    assert trainer.run(lambda _step, losses: told.append(losses) is None)
+
+    def on_step(_step: int, losses: dict[str, float]) -> bool:
+        told.append(losses)
+        return True
+
+    assert trainer.run(on_step)
     assert trainer.step == 2 and len(told) == 2
     alpha, beta = SETTINGS[setting]
     assert (told[0]["divergence"] > 0.0) == (beta > 0.0)

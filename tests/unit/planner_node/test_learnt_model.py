@@ -28,7 +28,7 @@ from planner_node.action_models.weights import (
     load_action_model,
     save_action_model,
 )
-from planner_node.latent_plans import LatentPlanner
+from planner_node.latent_plans import LatentPlanner, StrangePictureError
 from planner_node.search.on_models import NoModelPlanError
 from scene_graph import Move, all_moves
 
@@ -103,7 +103,12 @@ def test_what_the_inverse_move_does_not_undo_is_dropped() -> None:
 def test_the_objective_of_the_thesis_can_be_trained_on() -> None:
     trainer = ActionTrainer(toy_transitions(2), ActionTraining(CONFIG, THESIS, steps=30))
     losses: list[float] = []
-    trainer.run(lambda _step, policy, _possible: losses.append(policy) is None)
+
+    def on_step(_step: int, policy: float, _possible: float) -> bool:
+        losses.append(policy)
+        return True
+
+    trainer.run(on_step)
     assert np.mean(losses[-5:]) < np.mean(losses[:5])
 
 
@@ -149,7 +154,9 @@ def test_a_file_that_is_no_action_model_is_refused(tmp_path: Path, content: byte
 def test_a_plan_between_pictures_is_one_between_their_codes() -> None:
     trainer, seen = trained(), toy_transitions()
     model = LearntModel(trainer.policy, trainer.discriminator, MOVES)
-    planner = LatentPlanner(lambda pictures: seen.codes[pictures[:, 0, 0, 0], 0], model)
+    planner = LatentPlanner(
+        lambda pictures: (seen.codes[pictures[:, 0, 0, 0], 0], pictures[:, 0, 0, 0] < 3), model
+    )
     pictures = [np.full((128, 128, 3), number, np.uint8) for number in range(3)]
     plan = planner.plan(pictures[0], pictures[2])
     assert plan.moves == (Move(0, 2),) and plan.confidence == 1.0
@@ -157,11 +164,24 @@ def test_a_plan_between_pictures_is_one_between_their_codes() -> None:
     assert planner.plan(pictures[1], pictures[1]).moves == ()
 
 
+def test_a_picture_of_something_else_is_told_by_which_it_is() -> None:
+    trainer, seen = trained(2), toy_transitions()
+    model = LearntModel(trainer.policy, trainer.discriminator, MOVES)
+    for strange in (0, 1):
+        valid = np.arange(2) != strange
+        planner = LatentPlanner(lambda _pictures, valid=valid: (seen.codes[:2, 0], valid), model)
+        with pytest.raises(StrangePictureError) as caught:
+            planner.plan(np.zeros((128, 128, 3), np.uint8), np.zeros((128, 128, 3), np.uint8))
+        assert caught.value.is_goal == bool(strange)
+
+
 def test_pictures_between_which_there_is_no_way_are_told() -> None:
     trainer, seen = trained(), toy_transitions()
     model = LearntModel(trainer.policy, trainer.discriminator, MOVES)
     blank = np.zeros_like(seen.codes[0, 0])
-    planner = LatentPlanner(lambda _pictures: np.stack([seen.codes[0, 0], blank]), model)
+    planner = LatentPlanner(
+        lambda _pictures: (np.stack([seen.codes[0, 0], blank]), np.ones(2, np.bool_)), model
+    )
     picture = np.zeros((128, 128, 3), np.uint8)
     with pytest.raises(NoModelPlanError):
         planner.plan(picture, picture)

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import threading
 import time
-from typing import Any
+from collections import deque
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from sensor_msgs.msg import Image
 from tamp_runtime.messages.images import ImageError, color_from_image
+from tamp_runtime.messages.stamps import nanoseconds
 from tamp_runtime.qos import NEWEST
 
 from perception_node.errors import PerceptionError
@@ -28,10 +30,13 @@ from .action_models.learnt import LearntModel
 from .action_models.weights import DEFAULT_ACTION_MODEL, ModelWeightsError, load_action_model
 from .errors import GoalImageError, InvalidGoalError, NoSceneGraphError, NotConfidentError
 from .goals import Goal, complete_goal
-from .latent_plans import LatentPlan, LatentPlanner
+from .latent_plans import LatentPlan, LatentPlanner, StrangePictureError
 from .search import SearchResult
 from .search.on_models import NoModelPlanError
 from .settings import Settings
+
+#: A scene graph comes after its picture by less than so many others.
+_PICTURES_KEPT: Final = 10
 
 
 class LatentView:
@@ -50,9 +55,9 @@ class LatentView:
             )
         except (PerceptionError, ModelWeightsError) as error:
             raise ValueError(str(error)) from error
-        self._planner = LatentPlanner(encoder.encode, model)
+        self._planner = LatentPlanner(encoder.read, model)
         self._lock = threading.Lock()
-        self._newest: Image | None = None
+        self._pictures: deque[Image] = deque(maxlen=_PICTURES_KEPT)
         node.create_subscription(
             Image,
             "camera/image_raw",
@@ -61,12 +66,15 @@ class LatentView:
             callback_group=MutuallyExclusiveCallbackGroup(),
         )
 
-    def plan(self, request: Any, seen: Stacks) -> tuple[Goal, SearchResult]:
+    def plan(
+        self, request: Any, seen: Stacks, stamp: int | None = None
+    ) -> tuple[Goal, SearchResult]:
         """The moves to a goal image, and the state of the scene graph that they lead to.
 
         Args:
             request: a request of PlanToGoal or a goal of AchieveGoal.
             seen: the state of the scene graph.
+            stamp: when its picture was taken, in ROS time [ns]; None: the newest one.
 
         Raises:
             InvalidGoalError: there is a text, or no image.
@@ -79,11 +87,8 @@ class LatentView:
                 "with the parameter representation = latent a goal is an image; give one and no "
                 "text, or set representation to scene_graph"
             )
-        newest = self._newest
-        if newest is None:
-            raise NoSceneGraphError("no picture has arrived on camera/image_raw")
         begun = time.perf_counter()
-        found = self._found(_picture(newest), _picture(request.goal_image))
+        found = self._found(_picture(self._now(stamp)), _picture(request.goal_image))
         states = [seen]
         try:
             for move in found.moves:
@@ -105,6 +110,8 @@ class LatentView:
         try:
             with self._lock:
                 return self._planner.plan(now, goal)
+        except StrangePictureError as error:
+            raise (GoalImageError if error.is_goal else NotConfidentError)(str(error)) from error
         except NoModelPlanError as error:
             raise GoalImageError(
                 f"no plan on codes leads to the goal image ({error}); it must show the blocks of "
@@ -112,8 +119,22 @@ class LatentView:
                 "trained on"
             ) from error
 
+    def _now(self, stamp: int | None) -> Image:
+        """The picture of a scene graph, or the newest one."""
+        pictures = list(self._pictures)
+        if not pictures:
+            raise NoSceneGraphError("no picture has arrived on camera/image_raw")
+        if stamp is None:
+            return pictures[-1]
+        for picture in pictures:
+            if nanoseconds(picture.header.stamp) == stamp:
+                return picture
+        raise NoSceneGraphError(
+            "the picture of the scene graph has not arrived on camera/image_raw; ask again"
+        )
+
     def _on_image(self, message: Image) -> None:
-        self._newest = message
+        self._pictures.append(message)
 
 
 def _picture(message: Image) -> NDArray[np.uint8]:

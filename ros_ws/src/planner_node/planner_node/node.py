@@ -165,7 +165,7 @@ class PlannerNode(Node):
                 ) from error
             raise
         if self._latent is not None:
-            goal, found = self._latent.plan(request, scene.stacks)
+            goal, found = self._latent.plan(request, scene.stacks, scene.stamp)
         else:
             goal = resolve(scene.stacks)
             settings = self._settings

@@ -91,6 +91,13 @@ class StateEncoder(nn.Module):
         codes = np.concatenate(parts) if parts else np.zeros((0, self.bits // 8), np.uint8)
         return self.snap(codes)[0] if snapped else codes
 
+    def read(self, images: Images) -> tuple[Codes, NDArray[np.bool_]]:
+        """The snapped codes of images, and which were near enough to valid ones to be meant.
+
+        One that was not shows something that no picture of the training did.
+        """
+        return self.snap(self.encode(images, snapped=False))
+
     def learn_parts(self, images: NDArray[np.uint8]) -> None:
         """Finds the parts of codes in pictures (s, r, 128, 128, 3), r of each of s states."""
         codes = self.encode(images.reshape(-1, *images.shape[2:]), snapped=False)

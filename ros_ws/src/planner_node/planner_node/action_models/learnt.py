@@ -86,6 +86,10 @@ class LearntModel:
                     self._known[new[row]].append((self._moves[action], code.tobytes()))
         return [self._known[state] for state in states]
 
+    def forget(self) -> None:
+        """Forgets the successors of all states that it was asked about."""
+        self._known.clear()
+
     def rolled_out(self, code: NDArray[np.uint8], moves: Sequence[Move]) -> Codes:
         """The codes before and after each of some moves, from one code (b,) -> (n + 1, b)."""
         codes = [code]

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How codes, predictions and plans are judged: by hand on small cases."""
+
+from __future__ import annotations
+
+import numpy as np
+from latent.planning import carried_out, majority, pairs, plan_all
+from latent.prediction import CopyState, NearestTransition, accuracy
+from latent.stability import noisy, uniqueness
+
+from planner_node.action_models import ObservedModel
+from planner_node.search.on_models import breadth_first_on
+from scene_graph import Move, Stacks
+
+
+def code(*values: int) -> np.ndarray:
+    return np.array([[value] for value in values], np.uint8)
+
+
+def test_accuracies_count_bits_changed_bits_and_whole_codes() -> None:
+    found = accuracy(code(0b0001, 0b0011), code(0b0000, 0b0000), code(0b0001, 0b0001))
+    assert (found.bits, found.changed, found.whole, found.n) == (15 / 16, 1.0, 0.5, 2)
+    copied = CopyState()(code(0b0000), np.array([0]))
+    assert accuracy(copied, code(0), code(0b0011)).changed == 0.0
+
+
+def test_the_nearest_transition_is_that_of_the_same_action() -> None:
+    seen = NearestTransition(code(0b0000, 0b1111, 0b1110), np.array([0, 0, 1]), code(1, 2, 3))
+    assert seen(code(0b0111, 0b0001, 0b1111), np.array([0, 0, 1]))[:, 0].tolist() == [2, 1, 3]
+
+
+def test_codes_that_two_states_share_are_counted_for_both() -> None:
+    codes = np.array([[[1], [1]], [[2], [1]], [[4], [4]]], np.uint8)
+    found = uniqueness(codes)
+    assert found.distinct == 1.0 - 2 / 3
+    assert found.nearest == 2
+    assert found.same == 2 / 3
+
+
+def test_the_most_frequent_code_of_a_state_is_its_own() -> None:
+    assert majority(np.array([[[1], [2], [2]], [[3], [4], [5]]], np.uint8)).tolist() == [[2], [3]]
+
+
+def test_noise_is_the_same_each_time_and_as_strong_as_asked() -> None:
+    image = np.full((1, 128, 128, 3), 128, np.uint8)
+    once, again = noisy(image, 0.05, 1), noisy(image, 0.05, 1)
+    assert np.array_equal(once, again)
+    assert abs(float((once / 255.0).std()) - 0.05) < 0.002
+    assert not np.array_equal(once, noisy(image, 0.05, 2))
+
+
+def test_plans_are_judged_by_the_rules_and_not_by_the_model() -> None:
+    """Of two models that both lead to the goal's code one is right about the world."""
+    layouts: list[Stacks] = [(("red_box",), ()), ((), ("red_box",))]
+    codes, tasks = code(7, 9), np.array([[0, 1]])
+    for move, valid in ((Move(0, 1), 1), (Move(1, 0), 0)):
+        model = ObservedModel([(b"\x07", move, b"\x09")])
+        plans = plan_all(model, breadth_first_on, tasks, codes, codes, layouts, {b"\x07"})
+        assert (plans.n, plans.valid, plans.states, plans.hallucinated) == (1, valid, 2, 1)
+        assert len(plans.failures) == 1 - valid
+
+
+def test_moves_are_carried_out_until_one_is_impossible() -> None:
+    start: Stacks = (("red_box", "blue_box"), ())
+    assert carried_out(start, [Move(0, 1)]) == (("red_box",), ("blue_box",))
+    assert carried_out(start, [Move(1, 0)]) is None
+
+
+def test_pairs_are_of_different_states() -> None:
+    drawn = pairs(300, 4, 1000)
+    assert (drawn[:, 0] != drawn[:, 1]).all() and set(drawn.ravel().tolist()) == {0, 1, 2, 3}
