@@ -20,6 +20,20 @@ from sim_node.scene.files import example_scenes
 from sim_node.world import World
 
 PATIENCE = 240.0
+#: On a machine that has a lot to do anything may take long.
+PATIENT_PLANNER = [
+    Parameter(name, value=PATIENCE)
+    for name in (
+        "perceive_timeout",
+        "graph_max_age",
+        "motion_accept_timeout",
+        "motion_silence_timeout",
+    )
+]
+PATIENT_MOTION = [
+    Parameter(name, value=PATIENCE)
+    for name in ("joint_state_timeout", "description_timeout", "rest_timeout")
+]
 LAYOUT = ["red_box,blue_box", "green_box", ""]
 
 
@@ -65,10 +79,12 @@ def test_a_wall_between_two_places_is_never_touched(
             ],
         )
     )
-    for kind in (PerceptionNode, PlannerNode):
-        ros_context.add(kind(context=context, parameter_overrides=[simulated]))
+    ros_context.add(PerceptionNode(context=context, parameter_overrides=[simulated]))
+    ros_context.add(PlannerNode(context=context, parameter_overrides=[simulated, *PATIENT_PLANNER]))
     around = Parameter("obstacles", value=scene)
-    ros_context.add(MotionNode(context=context, parameter_overrides=[simulated, around]))
+    ros_context.add(
+        MotionNode(context=context, parameter_overrides=[simulated, around, *PATIENT_MOTION])
+    )
     with PlannerClient(context=context) as planner:
         planner.start("red on stack2, green on red", timeout=PATIENCE)
         result = planner.result(timeout=3.0 * PATIENCE)

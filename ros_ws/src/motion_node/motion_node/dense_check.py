@@ -20,6 +20,7 @@ from .blocks import ROUND, Block, Scene
 from .hull_distances import MovingBox, MovingSpheres, Upright
 from .obstacles import Obstacle
 from .phases import PICK, Phase
+from .robots.link_poses import joint_axes, link_poses
 from .robots.model import ArmModel
 from .timing.trajectory import Interval, Trajectory
 
@@ -189,7 +190,7 @@ class _WayCheck:
     def _look(self, times: Array) -> tuple[Array, Array, list[tuple[str, str]]]:
         """Gaps (k, pairs) [m], most speeds of their bodies (k, pairs) [m/s], and the pairs."""
         positions, rates = self._trajectory.sample(times)
-        poses = _link_poses(self._model, positions.arm)
+        poses = link_poses(self._model, positions.arm)
         arm, gripper = self._model.arm, self._model.arm.gripper
         hand = poses[gripper.hand_link]
         rotation, origin = hand[:, :3, :3], hand[:, :3, 3]
@@ -231,7 +232,7 @@ class _WayCheck:
             [np.stack([body.center for _, body in boxes], axis=1), spheres.center], axis=1
         )
         radii = np.append([body.radius for _, body in boxes], spheres.radius)
-        speed = _speed(_joint_axes(self._model, poses), np.abs(rates.arm), middles, radii)
+        speed = _speed(joint_axes(self._model, poses), np.abs(rates.arm), middles, radii)
         count = len(times)
         names = [name for name, _ in boxes] + [ball.name for ball in balls]
         pairs = [(name, other) for name in names for other in (*self._others.names, TABLE)]
@@ -240,42 +241,7 @@ class _WayCheck:
 
 
 def _hand(model: ArmModel, q: Array) -> Array:
-    return _link_poses(model, q)[model.arm.gripper.hand_link]
-
-
-def _link_poses(model: ArmModel, q: Array) -> dict[str, Array]:
-    """Transforms (k, 4, 4) in the world of all links from the root to the hand."""
-    kinematics = model.kinematics
-    chain, link = [], model.arm.gripper.hand_link
-    while (joint := kinematics.by_child.get(link)) is not None:
-        chain.append(joint)
-        link = joint.parent
-    poses = {link: np.tile(np.eye(4), (len(q), 1, 1))}
-    for joint in reversed(chain):
-        pose = poses[joint.parent] @ joint.parent_from_joint
-        if joint.name in kinematics.position_in_q:
-            value = q[:, kinematics.position_in_q[joint.name]]
-            moved = np.tile(np.eye(4), (len(q), 1, 1))
-            if joint.kind == "prismatic":
-                moved[:, :3, 3] = joint.axis * value[:, None]
-            else:
-                a, b, c = joint.axis
-                cross = np.array([[0, -c, b], [c, 0, -a], [-b, a, 0]])
-                moved[:, :3, :3] += np.sin(value)[:, None, None] * cross
-                moved[:, :3, :3] += (1 - np.cos(value))[:, None, None] * (cross @ cross)
-            pose = pose @ moved
-        poses[joint.child] = pose
-    return poses
-
-
-def _joint_axes(model: ArmModel, poses: dict[str, Array]) -> tuple[Array, Array]:
-    """Directions and points (k, n, 3) of the joints' axes in the world."""
-    directions, points = [], []
-    for joint in model.kinematics.joints:
-        pose = poses[joint.child]
-        directions.append(pose[:, :3, :3] @ joint.axis)
-        points.append(pose[:, :3, 3])
-    return np.stack(directions, axis=1), np.stack(points, axis=1)
+    return link_poses(model, q)[model.arm.gripper.hand_link]
 
 
 def _speed(joints: tuple[Array, Array], rates: Array, centers: Array, radii: Array) -> Array:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Final
 
 import numpy as np
 
@@ -17,6 +18,13 @@ from .grasps import Circumstances, Grasp, choose_grasp, grasps_for
 from .phases import HOME, PICK, PLACE, Phase, Switch, Tool
 from .robots import Gripper
 from .settings import PhaseSettings
+
+#: Number of stacks where nobody has said how many there are.
+USUAL_STACKS: Final = 3
+#: No stack is taken to be higher than this above the table, where nobody knows [m].
+TALLEST: Final = 0.35
+#: Above the highest known stack, where the arm cannot rise to ``TALLEST`` [m].
+SPARE_RISE: Final = 0.03
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +26,9 @@ from .constraints import (
 from .dense_check import check as dense_check
 from .errors import PATH, CancelledError, InfeasibleError
 from .expand import (
+    SPARE_RISE,
+    TALLEST,
+    USUAL_STACKS,
     Choice,
     expand,
     only_for,
@@ -52,13 +54,6 @@ from .timing.trajectory import Trajectory
 __all__ = ["Motion", "MotionPlanner"]
 
 Array = NDArray[np.float64]
-
-#: Number of stacks where nobody has said how many there are.
-USUAL_STACKS: Final = 3
-#: No stack is taken to be higher than this above the table, where nobody knows [m].
-TALLEST: Final = 0.35
-#: Above the highest known stack, where the arm cannot rise to ``TALLEST`` [m].
-SPARE_RISE: Final = 0.03
 
 
 class MotionPlanner:
