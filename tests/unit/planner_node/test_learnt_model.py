@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import functools
 from pathlib import Path
 
 import numpy as np
@@ -29,7 +28,7 @@ from planner_node.action_models.weights import (
     load_action_model,
     save_action_model,
 )
-from planner_node.latent_plans import LatentPlanner, StrangePictureError
+from planner_node.latent_plans import LatentPlanner, Read, StrangePictureError
 from planner_node.search.on_models import NoModelPlanError
 from scene_graph import Move, all_moves
 
@@ -165,12 +164,17 @@ def test_a_plan_between_pictures_is_one_between_their_codes() -> None:
     assert planner.plan(pictures[1], pictures[1]).moves == ()
 
 
+def known(answer: tuple[NDArray[np.uint8], NDArray[np.bool_]]) -> Read:
+    """An encoder that says the same of all pictures."""
+    return lambda _pictures: answer
+
+
 def test_a_picture_of_something_else_is_told_by_which_it_is() -> None:
     trainer, seen = trained(2), toy_transitions()
     model = LearntModel(trainer.policy, trainer.discriminator, MOVES)
     for strange in (0, 1):
-        known = seen.codes[:2, 0], np.arange(2) != strange
-        planner = LatentPlanner(functools.partial(lambda codes, _pictures: codes, known), model)
+        answer = (seen.codes[:2, 0], np.arange(2) != strange)
+        planner = LatentPlanner(known(answer), model)
         with pytest.raises(StrangePictureError) as caught:
             planner.plan(np.zeros((128, 128, 3), np.uint8), np.zeros((128, 128, 3), np.uint8))
         assert caught.value.is_goal == bool(strange)
