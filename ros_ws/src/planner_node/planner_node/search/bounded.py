@@ -29,10 +29,13 @@ from .wanted import Wanted
 ENOUGH: Final = 1.05
 #: Blocks whose shortest plan is found at once.
 WHOLE: Final = 10
-#: Constructed plans of which the shortest is looked at further.
-CONSTRUCTED: Final = 60
+#: Constructed plans each way, and those of them that are looked at further.
+CONSTRUCTED: Final = 30
+KEPT: Final = 8
 #: Moves of plans that are looked at for each block, see :func:`shortened`.
 WORK_OF_A_BLOCK: Final = 12_000
+#: The share of it that goes to all that are kept; the rest goes to the shortest of them.
+FIRST_SHARE: Final = 0.6
 #: Patterns of a group of the split that is tried for the bound.
 GUIDE_PATTERNS: Final = 16_000
 
@@ -48,19 +51,28 @@ def bounded(problem: Problem, limits: Limits) -> list[State]:
         return patterns_both_ends(problem, limits)
     least = _least(problem, limits)
     limits.prove_at_least(least)
-    moves = _constructed(problem.initial, target, limits)
     work = WORK_OF_A_BLOCK * len(names)
-    moves = shortened(problem.initial, target, moves, ENOUGH * least, work, limits)
-    return states_along(problem.start, moves)
+
+    def shorter(moves: list[Move], share: float) -> list[Move]:
+        return shortened(problem.initial, target, moves, ENOUGH * least, int(share * work), limits)
+
+    plans = [
+        shorter(moves, FIRST_SHARE / KEPT)
+        for moves in _constructed(problem.initial, target, limits)
+    ]
+    return states_along(problem.start, shorter(min(plans, key=len), 1.0 - FIRST_SHARE))
 
 
-def _constructed(initial: Stacks, target: Stacks, limits: Limits) -> list[Move]:
+def _constructed(initial: Stacks, target: Stacks, limits: Limits) -> list[list[Move]]:
     """The shortest of many constructed plans."""
     plans = []
     for seed in range(CONSTRUCTED):
         limits.poll()
         plans.append(constructed(initial, target, random.Random(seed)))
-    return min(plans, key=len)
+        # Every move can be undone: a plan from the goal to the start is one, read backwards.
+        back = constructed(target, initial, random.Random(seed))
+        plans.append([Move(move.target, move.source) for move in reversed(back)])
+    return sorted(plans, key=len)[:KEPT]
 
 
 def _least(problem: Problem, limits: Limits) -> int:
