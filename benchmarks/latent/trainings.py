@@ -131,10 +131,7 @@ def train_action_model(folder: Path, seen: Transitions, config: ActionTraining) 
         trainer.resume(checkpoint)
     title = f"action model ({config.objective})"
     with progress(title, config.steps, trainer.step, folder / "log.txt") as shown:
-        if not trainer.run(
-            lambda step, policy, possible: shown.show(step, {"π": policy, "D": possible}),
-            checkpoint,
-        ):
+        if not trainer.run(shown.show, checkpoint):
             raise StoppedError
     metadata = {"commit": source_commit(), "training_seconds": f"{trainer.seconds:.0f}"}
     save_action_model(

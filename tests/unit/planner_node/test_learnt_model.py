@@ -104,8 +104,8 @@ def test_the_objective_of_the_thesis_can_be_trained_on() -> None:
     trainer = ActionTrainer(toy_transitions(2), ActionTraining(CONFIG, THESIS, steps=30))
     losses: list[float] = []
 
-    def on_step(_step: int, policy: float, _possible: float) -> bool:
-        losses.append(policy)
+    def on_step(_step: int, told: dict[str, float]) -> bool:
+        losses.append(told["π"])
         return True
 
     trainer.run(on_step)

@@ -3,19 +3,17 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
-from pathlib import Path
-from typing import Any, Final
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from torch import Tensor
+from torch import Tensor, nn
 from torch.nn import functional
 
-from perception_node.errors import WeightsError
+from perception_node.training.run import Stateful, TrainingRun
 
 from .answering import ANSWERERS
 from .state_encoder import EncoderConfig, StateEncoder, values_of
@@ -73,46 +71,45 @@ class QaConfig:
     seed: int = 0
 
 
-class QaTrainer:
-    """One run; its whole state can be saved and taken up again."""
+class QaTrainer(TrainingRun[dict[str, float]]):
+    """One run; each step tells the parts of its loss."""
 
     def __init__(self, asked: Asked, config: QaConfig) -> None:
-        self.asked, self.config = asked, config
+        super().__init__(config, config.epochs * -(-len(asked.images) // config.batch))
+        self.asked = asked
         self.alpha, self.beta = SETTINGS[config.setting]
         torch.manual_seed(config.seed)
         self.encoder = StateEncoder(config.encoder)
         self.answerer = ANSWERERS[config.answerer](config.words, config.answers)
-        self.steps = config.epochs * -(-len(asked.images) // config.batch)
         parameters = [*self.encoder.parameters(), *self.answerer.parameters()]
         self.optimizer = torch.optim.AdamW(parameters, lr=config.learning_rate, weight_decay=1e-4)
         self.schedule = torch.optim.lr_scheduler.OneCycleLR(
             self.optimizer, config.learning_rate, total_steps=self.steps, pct_start=0.1
         )
         self._bounds = np.searchsorted(asked.owners, np.arange(len(asked.images) + 1))
-        self.step = 0
-        self.seconds = 0.0
 
-    def run(
-        self, on_step: Callable[[int, dict[str, float]], bool], checkpoint: Path | None = None
-    ) -> bool:
-        """Trains until done, or ``on_step(step, losses)`` returns False; whether it is done."""
-        self.encoder.train()
-        self.answerer.train()
-        go_on = True
-        while go_on and self.step < self.steps:
-            start = time.perf_counter()
-            losses = self._advance()
-            self.seconds += time.perf_counter() - start
-            go_on = on_step(self.step, losses)
-            if checkpoint and self.step % self.config.checkpoint_every == 0:
-                self.save(checkpoint)
-        if checkpoint:
-            self.save(checkpoint)
-        self.encoder.eval()
-        self.answerer.eval()
-        return self.step >= self.steps
+    @property
+    def networks(self) -> tuple[nn.Module, nn.Module]:
+        """See :class:`TrainingRun`."""
+        return (self.encoder, self.answerer)
 
-    def _advance(self) -> dict[str, float]:
+    @property
+    def parts(self) -> Mapping[str, Stateful]:
+        """See :class:`TrainingRun`."""
+        return {
+            "encoder": self.encoder,
+            "answerer": self.answerer,
+            "optimizer": self.optimizer,
+            "schedule": self.schedule,
+        }
+
+    @property
+    def generator(self) -> torch.Generator:
+        """PyTorch's own, from which dropout draws; batches come from seed and epoch."""
+        return torch.default_generator
+
+    def advance(self) -> dict[str, float]:
+        """See :class:`TrainingRun`."""
         images, questions, owners, answers = self._batch()
         quantised, _, own = self.encoder.quantiser(self.encoder.encoder(images))
         shown = self.encoder.decoder(quantised)
@@ -137,7 +134,6 @@ class QaTrainer:
             torch.nn.utils.clip_grad_norm_(network.parameters(), 2.0)
         self.optimizer.step()
         self.schedule.step()
-        self.step += 1
         return {
             "error": float(error.detach()),
             "likelihood": float(likelihood.detach()),
@@ -159,47 +155,3 @@ class QaTrainer:
             torch.from_numpy(owners),
             torch.from_numpy(self.asked.answers[index]),
         )
-
-    def save(self, path: Path) -> None:
-        """Writes the whole state of the run; the old file is replaced once the new one is there."""
-        path.parent.mkdir(parents=True, exist_ok=True)
-        state: dict[str, Any] = {
-            "config": asdict(self.config),
-            "step": self.step,
-            "seconds": self.seconds,
-            "encoder": self.encoder.state_dict(),
-            "answerer": self.answerer.state_dict(),
-            "optimizer": self.optimizer.state_dict(),
-            "schedule": self.schedule.state_dict(),
-            "random": torch.get_rng_state(),
-        }
-        partial = path.with_suffix(".partial")
-        torch.save(state, partial)
-        partial.replace(path)
-
-    def resume(self, path: Path) -> None:
-        """Takes up a run where :meth:`save` left it; executes nothing from the file.
-
-        Raises:
-            WeightsError: if the file is damaged or belongs to a run with other hyper-parameters.
-        """
-        try:
-            state = torch.load(path, weights_only=True)
-            if state["config"] != asdict(self.config):
-                raise WeightsError(
-                    f"checkpoint {path} belongs to a run with other hyper-parameters; "
-                    "use another folder, or delete it",
-                    path,
-                )
-            self.encoder.load_state_dict(state["encoder"])
-            self.answerer.load_state_dict(state["answerer"])
-            self.optimizer.load_state_dict(state["optimizer"])
-            self.schedule.load_state_dict(state["schedule"])
-            torch.set_rng_state(state["random"])
-            self.step, self.seconds = int(state["step"]), float(state["seconds"])
-        except WeightsError:
-            raise
-        except Exception as error:  # torch reports damage by a dozen types
-            raise WeightsError(
-                f"checkpoint {path} is damaged ({error}); delete it", path
-            ) from error

@@ -3,18 +3,15 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
-from pathlib import Path
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from perception_node.errors import WeightsError
+from perception_node.training.run import Stateful, TrainingRun
 
 from .objective import Parts, Weights, paired_loss
 from .state_encoder import EncoderConfig, StateEncoder, values_of
@@ -48,11 +45,12 @@ class TrainingConfig:
     seed: int = 0
 
 
-class EncoderTrainer:
-    """One run."""
+class EncoderTrainer(TrainingRun[Parts]):
+    """One run; each step tells the parts of its loss."""
 
     def __init__(self, pictures: Pictures, config: TrainingConfig) -> None:
-        self.pictures, self.config = pictures, config
+        super().__init__(config, config.steps)
+        self.pictures = pictures
         torch.manual_seed(config.seed)
         self.encoder = StateEncoder(config.encoder)
         self.optimizer = torch.optim.AdamW(
@@ -62,29 +60,24 @@ class EncoderTrainer:
             self.optimizer, config.learning_rate, total_steps=config.steps, pct_start=0.1
         )
         self.rng = torch.Generator().manual_seed(config.seed)
-        self.step = 0
-        self.seconds = 0.0
 
-    def run(self, on_step: Callable[[int, Parts], bool], checkpoint: Path | None = None) -> bool:
-        """Trains until done, or until ``on_step(step, parts)`` returns False; whether it is done.
+    @property
+    def networks(self) -> tuple[StateEncoder]:
+        """See :class:`TrainingRun`."""
+        return (self.encoder,)
 
-        A checkpoint is written now and then, and at the end in either case.
-        """
-        self.encoder.train()
-        go_on = True
-        while go_on and self.step < self.config.steps:
-            start = time.perf_counter()
-            parts = self._advance()
-            self.seconds += time.perf_counter() - start
-            go_on = on_step(self.step, parts)
-            if checkpoint and self.step % self.config.checkpoint_every == 0:
-                self.save(checkpoint)
-        if checkpoint:
-            self.save(checkpoint)
-        self.encoder.eval()
-        return self.step >= self.config.steps
+    @property
+    def parts(self) -> Mapping[str, Stateful]:
+        """See :class:`TrainingRun`."""
+        return {"encoder": self.encoder, "optimizer": self.optimizer, "schedule": self.schedule}
 
-    def _advance(self) -> Parts:
+    @property
+    def generator(self) -> torch.Generator:
+        """See :class:`TrainingRun`."""
+        return self.rng
+
+    def advance(self) -> Parts:
+        """See :class:`TrainingRun`."""
         first, second = self._batch()
         parts = paired_loss(self.encoder, first, second, self.config.weights, self.rng)
         self.optimizer.zero_grad(set_to_none=True)
@@ -92,7 +85,6 @@ class EncoderTrainer:
         torch.nn.utils.clip_grad_norm_(self.encoder.parameters(), 1.0)
         self.optimizer.step()
         self.schedule.step()
-        self.step += 1
         return parts
 
     def _batch(self) -> tuple[Tensor, Tensor]:
@@ -111,45 +103,3 @@ class EncoderTrainer:
         strength = self.config.grain * torch.rand(len(images), 1, 1, 1, generator=self.rng) ** 2
         noise = torch.randn(images.shape, generator=self.rng)
         return (images + strength * noise).contiguous(memory_format=torch.channels_last)
-
-    def save(self, path: Path) -> None:
-        """Writes the whole state of the run; the old file is replaced once the new one is there."""
-        path.parent.mkdir(parents=True, exist_ok=True)
-        state: dict[str, Any] = {
-            "config": asdict(self.config),
-            "step": self.step,
-            "seconds": self.seconds,
-            "encoder": self.encoder.state_dict(),
-            "optimizer": self.optimizer.state_dict(),
-            "schedule": self.schedule.state_dict(),
-            "rng": self.rng.get_state(),
-        }
-        partial = path.with_suffix(".partial")
-        torch.save(state, partial)
-        partial.replace(path)
-
-    def resume(self, path: Path) -> None:
-        """Takes up a run where :meth:`save` left it; executes nothing from the file.
-
-        Raises:
-            WeightsError: if the file is damaged or belongs to a run with other hyper-parameters.
-        """
-        try:
-            state = torch.load(path, weights_only=True)
-            if state["config"] != asdict(self.config):
-                raise WeightsError(
-                    f"checkpoint {path} belongs to a run with other hyper-parameters; "
-                    "use another --run folder, or delete it",
-                    path,
-                )
-            self.encoder.load_state_dict(state["encoder"])
-            self.optimizer.load_state_dict(state["optimizer"])
-            self.schedule.load_state_dict(state["schedule"])
-            self.rng.set_state(state["rng"])
-            self.step, self.seconds = int(state["step"]), float(state["seconds"])
-        except WeightsError:
-            raise
-        except Exception as error:  # torch reports damage by a dozen types
-            raise WeightsError(
-                f"checkpoint {path} is damaged ({error}); delete it", path
-            ) from error

@@ -3,16 +3,13 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import torch
 from torch import Tensor
 
-from perception_node.errors import WeightsError
 from perception_node.visual_module.coordinate_regressor import DEFAULT_BACKBONE
 from perception_node.visual_module.grid_sampler import sample
 from perception_node.visual_module.object_images import IMAGE_SIZE
@@ -21,6 +18,7 @@ from perception_node.visual_module.visual_module import TRANSLATION_FACTOR, Visu
 from .augmentation import damaged, recolored, speckled, stretched
 from .dataset import ObjectCrops, place_crops
 from .objective import reconstruction_loss
+from .run import Stateful, TrainingRun
 
 
 @dataclass(frozen=True)
@@ -67,11 +65,11 @@ def bfloat16_helps() -> bool:
         return False
 
 
-class Trainer:
-    """One training run; its whole state can be saved and taken up again."""
+class Trainer(TrainingRun[float]):
+    """One training run of G; each step tells its loss."""
 
     def __init__(self, crops: ObjectCrops, config: TrainingConfig) -> None:
-        self.config = config
+        super().__init__(config, config.steps)
         self.crops = crops
         torch.manual_seed(config.seed)
         self.module = VisualModule(config.backbone, config.translation_factor, config.imagenet)
@@ -82,32 +80,25 @@ class Trainer:
         self.schedule = torch.optim.lr_scheduler.OneCycleLR(
             self.optimizer, config.learning_rate, total_steps=config.steps, pct_start=0.15
         )
-        self.generator = torch.Generator().manual_seed(config.seed)
-        self.step = 0
-        self.seconds = 0.0
+        self._generator = torch.Generator().manual_seed(config.seed)
 
-    def run(self, on_step: Callable[[int, float], bool], checkpoint: Path | None = None) -> bool:
-        """Trains until done, or until ``on_step(step, loss)`` returns False.
+    @property
+    def networks(self) -> tuple[VisualModule]:
+        """See :class:`TrainingRun`."""
+        return (self.module,)
 
-        A checkpoint is written now and then, and at the end in either case.
+    @property
+    def parts(self) -> Mapping[str, Stateful]:
+        """See :class:`TrainingRun`."""
+        return {"module": self.module, "optimizer": self.optimizer, "schedule": self.schedule}
 
-        Returns:
-            Whether all steps are done.
-        """
-        self.module.train()
-        go_on = True
-        while go_on and self.step < self.config.steps:
-            start = time.perf_counter()
-            loss = self._advance()
-            self.seconds += time.perf_counter() - start
-            go_on = on_step(self.step, loss)
-            if checkpoint and self.step % self.config.checkpoint_every == 0:
-                self.save(checkpoint)
-        if checkpoint:
-            self.save(checkpoint)
-        return self.step >= self.config.steps
+    @property
+    def generator(self) -> torch.Generator:
+        """See :class:`TrainingRun`."""
+        return self._generator
 
-    def _advance(self) -> float:
+    def advance(self) -> float:
+        """See :class:`TrainingRun`."""
         inputs, target, default = self._batch()
         scenes, objects = target.shape[:2]
         with torch.autocast("cpu", torch.bfloat16, enabled=self.config.bfloat16):
@@ -119,7 +110,6 @@ class Trainer:
         torch.nn.utils.clip_grad_norm_(self.module.parameters(), 1.0)
         self.optimizer.step()
         self.schedule.step()
-        self.step += 1
         return float(loss.detach())
 
     def _batch(self) -> tuple[Tensor, Tensor, Tensor]:
@@ -141,51 +131,6 @@ class Trainer:
         default = place_crops(pixels, torch.zeros_like(corners))
         inputs = inputs.contiguous(memory_format=torch.channels_last)
         return inputs, target.unflatten(0, (-1, objects)), default
-
-    def save(self, path: Path) -> None:
-        """Writes the whole state of the run; the old file is replaced once the new one is there."""
-        path.parent.mkdir(parents=True, exist_ok=True)
-        partial = path.with_suffix(".partial")
-        torch.save(self.state(), partial)
-        partial.replace(path)
-
-    def state(self) -> dict[str, Any]:
-        """Everything that :meth:`resume` needs, as :func:`torch.save` takes it."""
-        return {
-            "config": asdict(self.config),
-            "step": self.step,
-            "seconds": self.seconds,
-            "module": self.module.state_dict(),
-            "optimizer": self.optimizer.state_dict(),
-            "schedule": self.schedule.state_dict(),
-            "generator": self.generator.get_state(),
-        }
-
-    def resume(self, path: Path) -> None:
-        """Takes up a run where :meth:`save` left it; executes nothing from the file.
-
-        Raises:
-            WeightsError: if the file is damaged or belongs to a run with other hyper-parameters.
-        """
-        try:
-            state = torch.load(path, weights_only=True)
-            if state["config"] != asdict(self.config):
-                raise WeightsError(
-                    f"checkpoint {path} belongs to a run with other hyper-parameters; "
-                    "use another --run folder, or delete it",
-                    path,
-                )
-            self.module.load_state_dict(state["module"])
-            self.optimizer.load_state_dict(state["optimizer"])
-            self.schedule.load_state_dict(state["schedule"])
-            self.generator.set_state(state["generator"])
-            self.step, self.seconds = int(state["step"]), float(state["seconds"])
-        except WeightsError:
-            raise
-        except Exception as error:  # torch reports damage by a dozen types
-            raise WeightsError(
-                f"checkpoint {path} is damaged ({error}); delete it", path
-            ) from error
 
 
 def _shifted(

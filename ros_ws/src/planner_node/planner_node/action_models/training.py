@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,6 +12,9 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor
+
+from perception_node.errors import WeightsError
+from perception_node.training.run import Stateful, TrainingRun
 
 from ..errors import PlannerError
 from .effect_network import Discriminator, EffectConfig, EffectNetwork
@@ -78,11 +80,12 @@ class ActionTraining:
     seed: int = 0
 
 
-class ActionTrainer:
-    """One run of both networks; its whole state can be saved and taken up again."""
+class ActionTrainer(TrainingRun[dict[str, float]]):
+    """One run of both networks; each step tells the losses of π and D."""
 
     def __init__(self, seen: Transitions, config: ActionTraining) -> None:
-        self.config, self.seen = config, seen
+        super().__init__(config, config.steps)
+        self.seen = seen
         torch.manual_seed(config.seed)
         self.policy = EffectNetwork(config.effect, seen.parts)
         self.discriminator = Discriminator(config.effect, seen.parts)
@@ -96,32 +99,29 @@ class ActionTrainer:
             self.optimizer, config.learning_rate, total_steps=config.steps, pct_start=0.1
         )
         self.rng = torch.Generator().manual_seed(config.seed)
-        self.step = 0
-        self.seconds = 0.0
 
-    def run(
-        self,
-        on_step: Callable[[int, float, float], bool],
-        checkpoint: Path | None = None,
-    ) -> bool:
-        """Trains until done, or ``on_step(step, loss of π, loss of D)`` is False; whether done."""
-        self.policy.train()
-        self.discriminator.train()
-        go_on = True
-        while go_on and self.step < self.config.steps:
-            start = time.perf_counter()
-            losses = self._advance()
-            self.seconds += time.perf_counter() - start
-            go_on = on_step(self.step, *losses)
-            if checkpoint and self.step % self.config.checkpoint_every == 0:
-                self.save(checkpoint)
-        if checkpoint:
-            self.save(checkpoint)
-        self.policy.eval()
-        self.discriminator.eval()
-        return self.step >= self.config.steps
+    @property
+    def networks(self) -> tuple[EffectNetwork, Discriminator]:
+        """See :class:`TrainingRun`."""
+        return (self.policy, self.discriminator)
 
-    def _advance(self) -> tuple[float, float]:
+    @property
+    def parts(self) -> Mapping[str, Stateful]:
+        """See :class:`TrainingRun`."""
+        return {
+            "policy": self.policy,
+            "discriminator": self.discriminator,
+            "optimizer": self.optimizer,
+            "schedule": self.schedule,
+        }
+
+    @property
+    def generator(self) -> torch.Generator:
+        """See :class:`TrainingRun`."""
+        return self.rng
+
+    def advance(self) -> dict[str, float]:
+        """See :class:`TrainingRun`."""
         seen = self.seen
         picked = torch.randint(len(seen.before), (self.config.batch,), generator=self.rng).numpy()
         before = self._drawn(seen.before[picked])
@@ -138,8 +138,7 @@ class ActionTrainer:
         torch.nn.utils.clip_grad_norm_(self.policy.parameters(), 1.0)
         self.optimizer.step()
         self.schedule.step()
-        self.step += 1
-        return float(of_policy.detach()), float(of_discriminator.detach())
+        return {"π": float(of_policy.detach()), "D": float(of_discriminator.detach())}
 
     def _policy_loss(self, logits: Tensor, before: Tensor, after: Tensor) -> Tensor:
         if self.config.objective == THESIS:
@@ -176,23 +175,6 @@ class ActionTrainer:
             swapped.append((torch.where(free, other, was), torch.where(free, other, becomes)))
         return torch.cat([w for w, _ in swapped], 1), torch.cat([b for _, b in swapped], 1)
 
-    def save(self, path: Path) -> None:
-        """Writes the whole state of the run; the old file is replaced once the new one is there."""
-        path.parent.mkdir(parents=True, exist_ok=True)
-        state: dict[str, Any] = {
-            "config": asdict(self.config),
-            "step": self.step,
-            "seconds": self.seconds,
-            "policy": self.policy.state_dict(),
-            "discriminator": self.discriminator.state_dict(),
-            "optimizer": self.optimizer.state_dict(),
-            "schedule": self.schedule.state_dict(),
-            "rng": self.rng.get_state(),
-        }
-        partial = path.with_suffix(".partial")
-        torch.save(state, partial)
-        partial.replace(path)
-
     def resume(self, path: Path) -> None:
         """Takes up a run where :meth:`save` left it; executes nothing from the file.
 
@@ -200,18 +182,11 @@ class ActionTrainer:
             CheckpointError: it is damaged, or of a run with other hyper-parameters or codes.
         """
         try:
-            state = torch.load(path, weights_only=True)
-        except Exception as error:  # torch reports damage by a dozen types
-            raise CheckpointError(f"checkpoint {path} is damaged ({error}); delete it") from error
-        same = state["config"] == asdict(self.config)
-        if not same or not torch.equal(state["policy"]["index"], self.policy.index):
-            raise CheckpointError(
-                f"checkpoint {path} belongs to a run with other hyper-parameters or other codes; "
-                "use another folder, or delete it"
-            )
-        self.policy.load_state_dict(state["policy"])
-        self.discriminator.load_state_dict(state["discriminator"])
-        self.optimizer.load_state_dict(state["optimizer"])
-        self.schedule.load_state_dict(state["schedule"])
-        self.rng.set_state(state["rng"])
-        self.step, self.seconds = int(state["step"]), float(state["seconds"])
+            super().resume(path)
+        except WeightsError as error:
+            raise CheckpointError(str(error)) from error
+
+    def is_of_this_run(self, state: dict[str, Any]) -> bool:
+        """Whether it was trained on the same bits, too."""
+        same = torch.equal(state["policy"]["index"], self.policy.index)
+        return same and super().is_of_this_run(state)
