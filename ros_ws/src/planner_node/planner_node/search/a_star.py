@@ -4,16 +4,23 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from scene_graph import ABOVE, UP, Relation, base_index
 
 from .limits import Limits
 from .state import Parents, Problem, State, path_to, successors
 
+#: What a state leads to: the states after possible moves, and the symbol of what is moved.
+Successors = Callable[[State], Iterable[tuple[State, str]]]
 
-def a_star(problem: Problem, limits: Limits) -> list[State]:
-    """Expands the states of least depth + bound first; of equals the one nearest to a goal."""
+
+def a_star(problem: Problem, limits: Limits, following: Successors = successors) -> list[State]:
+    """Expands the states of least depth + bound first; of equals the one nearest to a goal.
+
+    Args:
+        following: fewer of them leave the bound a bound.
+    """
     bound = moves_left(problem)
     parents: Parents = {problem.start: None}
     depths = {problem.start: 0}
@@ -29,7 +36,7 @@ def a_star(problem: Problem, limits: Limits) -> list[State]:
         expanded.add(state)
         limits.count_expansion()
         depth = depths[state] + 1
-        for successor, _ in successors(state):
+        for successor, _ in following(state):
             # The bound is consistent, so that an expanded state has been reached the shortest way.
             if depth >= depths.get(successor, depth + 1):
                 continue

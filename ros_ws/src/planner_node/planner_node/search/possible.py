@@ -8,20 +8,19 @@ is found is shortest among those that are possible as far as anybody knows.
 
 from __future__ import annotations
 
-import heapq
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 from scene_graph import Move, Stacks, apply_move, base_name, format_stacks
 
-from ..errors import ImpossibleError
+from ..errors import ImpossibleError, UnreachableError
 from ..goals.goal import Goal
 from ..validator import validate_plan
-from .a_star import moves_left
+from .a_star import Successors, a_star
 from .limits import DEFAULT_MAX_EXPANSIONS, Limits
 from .plan import SearchResult
-from .state import Parents, Problem, State, path_to
+from .state import Problem, State, successors
 
 
 @dataclass(frozen=True)
@@ -97,8 +96,9 @@ def plan_avoiding(
     """
     limits = Limits(initial, goal, max_expansions, cancelled)
     problem = _Named(initial, goal, frozenset().union(*[item.names for item in exclusions]))
-    path = _search(problem, exclusions, limits)
-    if path is None:
+    try:
+        path = a_star(problem, limits, _possible(problem, exclusions))
+    except UnreachableError as error:
         listed = tuple(dict.fromkeys(str(item) for item in exclusions))
         raise ImpossibleError(
             f"impossible: no sequence of moves that the arm can make leads from "
@@ -106,7 +106,7 @@ def plan_avoiding(
             limits.expanded,
             limits.seconds(),
             listed,
-        )
+        ) from error
     moves = tuple(_move_between(before, after) for before, after in pairwise(path))
     states = [initial]
     for move in moves:
@@ -129,37 +129,18 @@ class _Named(Problem):
         return tuple("".join(self.symbols.get(n, "*") for n in stack) for stack in stacks)
 
 
-def _search(problem: _Named, exclusions: Sequence[Exclusion], limits: Limits) -> list[State] | None:
-    bound = moves_left(problem)
+def _possible(problem: _Named, exclusions: Sequence[Exclusion]) -> Successors:
+    """The states after moves that are not excluded."""
     names = {symbol: name for name, symbol in problem.symbols.items()}
-    parents: Parents = {problem.start: None}
-    depths, expanded = {problem.start: 0}, set[State]()
-    left = bound(problem.start)
-    queue = [(left, left, problem.start)]
-    while queue:
-        _, _, state = heapq.heappop(queue)
-        if state in expanded:
-            continue
-        if problem.unmet(state) is None:
-            return path_to(state, parents)
-        expanded.add(state)
-        limits.count_expansion()
-        depth = depths[state] + 1
+
+    def possible(state: State) -> Iterator[tuple[State, str]]:
         stacks = tuple(tuple(names.get(symbol, symbol) for symbol in stack) for stack in state)
-        for source, stack in enumerate(state):
-            for target, other in enumerate(state if stack else ()):
-                move = Move(source, target)
-                if source == target or any(item.forbids(stacks, move) for item in exclusions):
-                    continue
-                changed = list(state)
-                changed[source], changed[target] = stack[:-1], other + stack[-1]
-                successor = tuple(changed)
-                if depth >= depths.get(successor, depth + 1):
-                    continue
-                depths[successor], parents[successor] = depth, state
-                left = bound(successor)
-                heapq.heappush(queue, (depth + left, left, successor))
-    return None
+        for after, symbol in successors(state):
+            move = _move_between(state, after)
+            if not any(item.forbids(stacks, move) for item in exclusions):
+                yield after, symbol
+
+    return possible
 
 
 def _move_between(before: State, after: State) -> Move:
