@@ -79,16 +79,8 @@ class Eyes:
         Raises:
             SimulationError: if the simulator is not there or refuses.
         """
-        request, client = ResetScene.Request(layout=format_layout(layout)), self._reset
-        try:
-            response = ask(
-                lambda: client.call_async(request),
-                client.service_is_ready,
-                client.wait_for_service,
-                timeout,
-            )
-        except TimeoutError as error:
-            raise SimulationError(f"sim/reset: {error}") from None
+        request = ResetScene.Request(layout=format_layout(layout))
+        response = _answer(self._reset, request, timeout)
         if not response.success:
             raise SimulationError(response.message)
         self.fresh_truth(timeout)
@@ -176,15 +168,7 @@ class Eyes:
         client = self._setters[service]
         parameter = Parameter(name, value=value).to_parameter_msg()
         request = SetParameters.Request(parameters=[parameter])
-        try:
-            answer = ask(
-                lambda: client.call_async(request),
-                client.service_is_ready,
-                client.wait_for_service,
-                timeout,
-            )
-        except TimeoutError as error:
-            raise SimulationError(f"{service}: {error}") from None
+        answer = _answer(client, request, timeout)
         if not answer.results[0].successful:
             raise SimulationError(f"{node} does not take {name}: {answer.results[0].reason}")
 
@@ -260,3 +244,16 @@ class Eyes:
 
     def _on_joints(self, message: bytes) -> None:
         self._joints = message
+
+
+def _answer(client: Client, request: Any, timeout: float) -> Any:
+    """What a service answers; raises SimulationError if it does not."""
+    try:
+        return ask(
+            lambda: client.call_async(request),
+            client.service_is_ready,
+            client.wait_for_service,
+            timeout,
+        )
+    except TimeoutError as error:
+        raise SimulationError(f"{client.srv_name}: {error}") from None
