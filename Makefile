@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-planner bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual record eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-planner bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -35,6 +35,9 @@ soak-tests: setup  ## the suite again and again, half of them on a busy machine;
 train-visual: setup  ## train the visual module G without labels; resumable
 	@$(RUN) ros2 run sim_node render_dataset --out data/states_5 --blocks 5
 	@$(RUN) ros2 run perception_node train_visual --data data/states_5 $(ARGS)
+
+record: setup  ## perception_node on your camera, whose pictures are kept for training; OUT= ARGS="-r camera/image_raw:=…"
+	@$(RUN) ros2 run perception_node perception_node --ros-args -p record:=$(or $(OUT),data/recorded) $(ARGS)
 
 data-latent: setup  ## pictures, transitions and questions of Chapter 4; resumable; ARGS=
 	@$(RUN) python benchmarks/render_latent.py $(ARGS)

@@ -56,7 +56,7 @@ def measure(options: argparse.Namespace) -> list[Row]:
                 seed=options.seed,
             )
             folder = options.runs / f"{setting}_{channels}_{options.answerer}_{options.seed}"
-            rows += qa_rows(train_qa(folder, train, config), train, test)
+            rows += qa_rows(train_qa(folder, train, config), test)
     return rows
 
 
@@ -68,7 +68,7 @@ def _parse() -> argparse.Namespace:
     parser.add_argument("--runs", type=Path, default=Path("runs/latent_qa"), help="of trainings")
     parser.add_argument("--settings", nargs="+", choices=SETTINGS, default=list(SETTINGS))
     parser.add_argument("--channels", nargs="+", type=int, choices=CHANNELS, default=[64])
-    parser.add_argument("--answerer", choices=ANSWERERS, default="film")
+    parser.add_argument("--answerer", choices=ANSWERERS, default="program")
     parser.add_argument("--quantiser", default="binary", help="of the encoder")
     parser.add_argument("--width", type=int, default=24, help="of the encoder's layers")
     parser.add_argument("--epochs", type=int, default=30, help="passes over the images")

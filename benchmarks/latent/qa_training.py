@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -18,6 +18,7 @@ from .clevr.asked import (
     answered,
     asked_of,
     shares_right,
+    told_to,
     without_picture,
 )
 from .clevr.dataset import ClevrSet
@@ -40,10 +41,10 @@ def train_qa(folder: Path, train: ClevrSet, config: QaConfig) -> QaTrainer:
         StoppedError: by Ctrl-C.
         WeightsError: the folder holds another run.
     """
-    vocabulary = Vocabulary.of(train)
-    told = {**asdict(config), "words": len(vocabulary.words), "answers": len(vocabulary.answers)}
-    config = QaConfig(**{**told, "encoder": config.encoder})
-    trainer = QaTrainer(asked_of(train, vocabulary), config)
+    told = told_to(config.answerer)
+    vocabulary = Vocabulary.of(train, told)
+    config = replace(config, words=vocabulary.words, answers=vocabulary.answers)
+    trainer = QaTrainer(asked_of(train, vocabulary, told), config)
     checkpoint = folder / CHECKPOINT
     if checkpoint.exists():
         trainer.resume(checkpoint)
@@ -64,10 +65,11 @@ def baseline_rows(train: ClevrSet, test: ClevrSet) -> list[Row]:
     ]  # fmt: skip
 
 
-def qa_rows(trainer: QaTrainer, train: ClevrSet, test: ClevrSet) -> list[Row]:
+def qa_rows(trainer: QaTrainer, test: ClevrSet) -> list[Row]:
     """A line of Table 4.1, with the accuracy of each family in its note."""
-    config, vocabulary = trainer.config, Vocabulary.of(train)
-    asked, questions = asked_of(test, vocabulary), all_questions(test)
+    config = trainer.config
+    vocabulary = Vocabulary(config.words, config.answers)
+    asked, questions = asked_of(test, vocabulary, told_to(config.answerer)), all_questions(test)
     label = f"{config.setting}, o = {config.encoder.channels}"
     full = config.encoder.channels == 64
     accuracy, error, bound, error_bound = TABLE[config.setting]

@@ -4,22 +4,35 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from torch import nn
 
-from perception_node.latent.answering import Answerer
+from perception_node.latent.answering import READ_PROGRAMS
 from perception_node.latent.qa_trainer import Asked
 from perception_node.latent.state_encoder import StateEncoder, values_of
 
 from .dataset import ClevrSet
+from .programs import tokens_of
 from .questions import Question
 from .things import ATTRIBUTES, RELATIONS
 
 _WORDS = frozenset(word for words in ATTRIBUTES.values() for word in words) | set(RELATIONS)
+
+
+#: How a question is told to a network.
+Telling = Callable[[Question], tuple[str, ...]]
+
+
+def told_to(answerer: str) -> Telling:
+    """As its program to those who read programs, else in words."""
+    if answerer in READ_PROGRAMS:
+        return lambda question: tokens_of(question.program)
+    return lambda question: question.words
 
 
 @dataclass(frozen=True)
@@ -30,22 +43,22 @@ class Vocabulary:
     answers: tuple[str, ...]
 
     @staticmethod
-    def of(data: ClevrSet) -> Vocabulary:
+    def of(data: ClevrSet, told: Telling) -> Vocabulary:
         """Of the training questions."""
         asked = list(_all(data))
-        words = sorted({word for question in asked for word in question.words})
+        words = sorted({word for question in asked for word in told(question)})
         return Vocabulary(("", *words), tuple(sorted({question.answer for question in asked})))
 
 
-def asked_of(data: ClevrSet, vocabulary: Vocabulary) -> Asked:
+def asked_of(data: ClevrSet, vocabulary: Vocabulary, told: Telling) -> Asked:
     """All questions of a set; words and answers that training did not have are left out."""
     words = {word: number for number, word in enumerate(vocabulary.words)}
     answers = {answer: number for number, answer in enumerate(vocabulary.answers)}
     asked = list(_all(data))
-    longest = max(len(question.words) for question in asked)
-    numbers = np.zeros((len(asked), longest), np.int64)
-    for row, question in enumerate(asked):
-        known = [words[word] for word in question.words if word in words]
+    texts = [told(question) for question in asked]
+    numbers = np.zeros((len(asked), max(map(len, texts))), np.int64)
+    for row, text in enumerate(texts):
+        known = [words[word] for word in text if word in words]
         numbers[row, : len(known)] = known
     owners = np.repeat(np.arange(len(data.images)), [len(items) for items in data.questions])
     right = np.array([answers.get(question.answer, -1) for question in asked])
@@ -54,7 +67,7 @@ def asked_of(data: ClevrSet, vocabulary: Vocabulary) -> Asked:
 
 @torch.inference_mode()
 def answered(
-    encoder: StateEncoder | None, answerer: Answerer, asked: Asked, batch: int = 64
+    encoder: StateEncoder | None, answerer: nn.Module, asked: Asked, batch: int = 64
 ) -> NDArray[np.int64]:
     """Answers as numbers, from what codes show; without an encoder from the images themselves."""
     answerer.eval()

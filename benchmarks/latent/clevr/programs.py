@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final
 
-from .things import Scene, related
+from .things import ATTRIBUTES, Scene, related
 
 
 class IllPosedError(ValueError):
@@ -67,3 +67,17 @@ def answer_of(result: Any) -> str:
     if isinstance(result, bool):
         return "yes" if result else "no"
     return str(result)
+
+
+def tokens_of(step: Step) -> tuple[str, ...]:
+    """A program as tokens in the order of execution, each filter's words one by one."""
+    before = tuple(token for item in step.inputs for token in tokens_of(item))
+    if step.function != "filter":
+        return (*before, " ".join((step.function, *step.words)))
+    named = [
+        f"filter {name} {word}"
+        for word in step.words
+        for name, values in ATTRIBUTES.items()
+        if word in values
+    ]
+    return (*before, *named)

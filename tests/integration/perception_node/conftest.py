@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from typing import Any
 
 import pytest
-from fake_camera import OTHER, TOPICS, TOWERS, WITHOUT_LABELS, FakeCamera
-from rclpy.node import Node
+from fake_camera import OTHER, TOPICS, TOWERS, WITHOUT_LABELS, FakeCamera, camera_before
 from rclpy.parameter import Parameter
 
 from perception_node.node import PerceptionNode
@@ -53,19 +51,3 @@ def camera(ros_context: Any, perception: PerceptionNode) -> FakeCamera:
 def labelling_camera(ros_context: Any, perception_of_labels: PerceptionNode) -> FakeCamera:
     """A camera with a detector."""
     return camera_before(ros_context, perception_of_labels, tuple(TOPICS))
-
-
-def camera_before(
-    ros_context: Any, perception: PerceptionNode, topics: Collection[str]
-) -> FakeCamera:
-    """A camera that perception hears, and that hears perception."""
-    node = ros_context.add(Node("fake_camera", context=ros_context.context, namespace="/cell"))
-    camera = FakeCamera(ros_context, node, topics=topics)
-    ros_context.wait_until(
-        lambda: (
-            all(publisher.get_subscription_count() for publisher in camera.publishers.values())
-            and perception.count_subscribers("scene_graph")
-        ),
-        what="discovery",
-    )
-    return camera

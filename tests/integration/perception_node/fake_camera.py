@@ -104,3 +104,17 @@ class FakeCamera:
     def show(self, frame: Frame, config: CameraConfig = DEFAULT_CAMERA) -> SceneGraph:
         """The graph of a frame that a camera took."""
         return self.send(self.messages(frame, config))
+
+
+def camera_before(ros_context: Any, perception: Node, topics: Collection[str]) -> FakeCamera:
+    """A camera that perception hears, and that hears perception."""
+    node = ros_context.add(Node("fake_camera", context=ros_context.context, namespace="/cell"))
+    camera = FakeCamera(ros_context, node, topics=topics)
+    ros_context.wait_until(
+        lambda: (
+            all(publisher.get_subscription_count() for publisher in camera.publishers.values())
+            and perception.count_subscribers("scene_graph")
+        ),
+        what="discovery",
+    )
+    return camera

@@ -49,12 +49,13 @@ from .conversions import (
     perceived_to_message,
 )
 from .drawing import draw_scene_graph
-from .errors import BadImageError
+from .errors import BadImageError, DatasetError
 from .frame_pairing import FramePairing, StampedSet
 from .observation import Observation
 from .parameters import PARAMETERS, config_from_parameters
 from .pipeline import Perceived, Perception
 from .segment import SEGMENTATION_TOPIC
+from .training.recording import Recorder
 from .visual_module.weights import DEFAULT_WEIGHTS, load_weights
 
 #: What makes pixels of the images of a frame.
@@ -101,7 +102,8 @@ class PerceptionNode(Node):
     """
 
     def __init__(self, **kwargs: Any) -> None:
-        """Raises ValueError (WeightsError) if a parameter or the weights file cannot be used."""
+        """Raises ValueError (PerceptionError) if a parameter, the weights file or the folder to
+        record to cannot be used."""
         super().__init__("perception_node", **kwargs)
         self._values = declare_parameters(self, PARAMETERS, self._parameters_changed)
         torch.set_num_threads(self._values["threads"])
@@ -117,6 +119,7 @@ class PerceptionNode(Node):
         self._lens: LensModel | None = None
         self._calibration = Calibration(self._values["rectified"], self._values["world_frame"])
         self._continuity = Continuity()
+        self._recorder = _recorder(self._values["record"])
         self._status: GraphStatus | None = None
         self._last_image = 0.0
         self._incomplete_since: float | None = None
@@ -247,6 +250,7 @@ class PerceptionNode(Node):
     def _perceive(self, observation: Observation, stamp: int, unchanged: float) -> Perceived:
         """Interprets an observation in the light of those before it; see :class:`Continuity`."""
         perceived = self._perception.perceive(observation)
+        self._record(observation, perceived)
         graph = perceived.graph
         if problem := self._continuity.calibration_problem(observation, graph, stamp):
             return self._perception.rejected(GraphStatus.BAD_IMAGE, problem)
@@ -259,6 +263,25 @@ class PerceptionNode(Node):
             )
             perceived = replace(perceived, message=perceived.message + hint)
         return perceived
+
+    def _record(self, observation: Observation, perceived: Perceived) -> None:
+        if self._recorder is None:
+            return
+        try:
+            if self._recorder.take(observation, perceived.segments):
+                self.get_logger().info(f"{self._recorder.kept} pictures kept")
+        except DatasetError as error:
+            self.get_logger().error(f"{error}; no more pictures are kept")
+            self._recorder = None
+
+    def destroy_node(self) -> None:
+        """Writes the pictures that are kept and not written yet."""
+        if self._recorder is not None:
+            try:
+                self._recorder.flush()
+            except DatasetError as error:
+                self.get_logger().error(str(error))
+        super().destroy_node()
 
     def _pixels(self, stream: str, message: Image | None) -> Any:
         if message is None:
@@ -285,6 +308,10 @@ class PerceptionNode(Node):
                 self.get_logger().warning(f"{perceived.status.name}: {perceived.message}")
         if self._markers.get_subscription_count():
             self._markers.publish(markers_from_graph(perceived.graph, header))
+
+
+def _recorder(folder: str) -> Recorder | None:
+    return Recorder(Path(folder)) if folder else None
 
 
 def run() -> int:

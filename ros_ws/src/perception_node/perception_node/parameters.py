@@ -95,6 +95,13 @@ PARAMETERS: Final = (
         read_only=True,
     ),
     ParameterSpec(
+        "record",
+        "",
+        "folder in which to keep pictures for train_visual, one whenever a block stands elsewhere; "
+        "empty: none are kept",
+        read_only=True,
+    ),
+    ParameterSpec(
         "stack_positions",
         [value for position in _DEFAULT.stack_positions for value in position],
         "x, y, z of each place on the table, from the left of the image, one after the other [m]",

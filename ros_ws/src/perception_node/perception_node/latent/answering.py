@@ -6,11 +6,13 @@ Several questions about one image share what is seen of it; only what is asked i
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Final
 
 import torch
 from torch import Tensor, nn
+
+from .programs import ProgramNetwork
 
 #: Channels of what is seen and of the question, and edge of the map that is asked about.
 _SEEN: Final = 48
@@ -61,18 +63,16 @@ class _Reader(nn.Module):
 
 
 class Answerer(nn.Module):
-    """The interface, and what all of its kinds share.
+    """Of questions in words; what both of its kinds share.
 
     Args:
         words: of the vocabulary; the first stands for none.
-        answers: that there are.
     """
 
-    def __init__(self, words: int, answers: int) -> None:
+    def __init__(self, words: Sequence[str]) -> None:
         super().__init__()
-        self.words, self.answers = words, answers
         self.sight = _Sight()
-        self.reader = _Reader(words)
+        self.reader = _Reader(len(words))
 
     def forward(self, images: Tensor, questions: Tensor, owners: Tensor) -> Tensor:
         """Logits of the answers, shape (m, |Y|).
@@ -92,8 +92,8 @@ class Answerer(nn.Module):
 class RelationNetwork(Answerer):
     """f of the sum over all pairs of places of g of both and the question, as in the thesis."""
 
-    def __init__(self, words: int, answers: int) -> None:
-        super().__init__(words, answers)
+    def __init__(self, words: Sequence[str], answers: Sequence[str]) -> None:
+        super().__init__(words)
         width = 128
         self.one = nn.Linear(_SEEN + 2, width)
         self.other = nn.Linear(_SEEN + 2, width)
@@ -102,7 +102,7 @@ class RelationNetwork(Answerer):
             nn.ReLU(), nn.Linear(width, width), nn.ReLU(), nn.Linear(width, width), nn.ReLU()
         )
         self.of_sum = nn.Sequential(
-            nn.Linear(width, width), nn.ReLU(), nn.Dropout(0.1), nn.Linear(width, answers)
+            nn.Linear(width, width), nn.ReLU(), nn.Dropout(0.1), nn.Linear(width, len(answers))
         )
 
     def reason(self, seen: Tensor, asked: Tensor, owners: Tensor) -> Tensor:
@@ -117,15 +117,15 @@ class RelationNetwork(Answerer):
 class FilmNetwork(Answerer):
     """The question scales and shifts what convolutions see; cheaper than all pairs of places."""
 
-    def __init__(self, words: int, answers: int, blocks: int = 4) -> None:
-        super().__init__(words, answers)
+    def __init__(self, words: Sequence[str], answers: Sequence[str], blocks: int = 4) -> None:
+        super().__init__(words)
         self.start = nn.Conv2d(_SEEN + 2, _SEEN, 1)
         self.convolutions = nn.ModuleList(
             nn.Conv2d(_SEEN + 2, _SEEN, 3, padding=1) for _ in range(blocks)
         )
         self.norms = nn.ModuleList(nn.BatchNorm2d(_SEEN, affine=False) for _ in range(blocks))
         self.film = nn.Linear(_ASKED, 2 * _SEEN * blocks)
-        self.end = nn.Sequential(nn.Linear(2 * _SEEN, 128), nn.ReLU(), nn.Linear(128, answers))
+        self.end = nn.Sequential(nn.Linear(2 * _SEEN, 128), nn.ReLU(), nn.Linear(128, len(answers)))
 
     def reason(self, seen: Tensor, asked: Tensor, owners: Tensor) -> Tensor:
         """See :class:`Answerer`."""
@@ -140,7 +140,11 @@ class FilmNetwork(Answerer):
         return found
 
 
-ANSWERERS: Final[dict[str, Callable[[int, int], Answerer]]] = {
+#: By name; those of :data:`READ_PROGRAMS` are told questions as programs.
+ANSWERERS: Final[dict[str, Callable[[Sequence[str], Sequence[str]], nn.Module]]] = {
     "film": FilmNetwork,
+    "program": ProgramNetwork,
     "relation": RelationNetwork,
 }
+
+READ_PROGRAMS: Final = frozenset({"program"})

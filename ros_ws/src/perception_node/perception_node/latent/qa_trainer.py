@@ -32,7 +32,7 @@ class Asked:
 
     Attributes:
         images: shape (n, 128, 128, 3).
-        questions: words as numbers, 0 after the last one, shape (m, t).
+        questions: words, or tokens of programs, as numbers, 0 after the last one, shape (m, t).
         owners: which image each is about, ascending, shape (m,).
         answers: as numbers, shape (m,).
     """
@@ -51,7 +51,7 @@ class QaConfig:
         encoder: what is trained.
         setting: one of :data:`SETTINGS`.
         answerer: one of :data:`.answering.ANSWERERS`.
-        words, answers: how many there are; the first word stands for none.
+        words, answers: that there are; the first word stands for none.
         epochs: passes over the images.
         batch: images in a batch, with all of their questions.
         learning_rate: peak of a one-cycle schedule.
@@ -61,9 +61,9 @@ class QaConfig:
 
     encoder: EncoderConfig = field(default_factory=lambda: EncoderConfig(channels=64))
     setting: str = "both"
-    answerer: str = "film"
-    words: int = 2
-    answers: int = 2
+    answerer: str = "program"
+    words: tuple[str, ...] = ("",)
+    answers: tuple[str, ...] = ("yes", "no")
     epochs: int = 30
     batch: int = 16
     learning_rate: float = 1.5e-3

@@ -117,7 +117,8 @@ class Trainer(TrainingRun[float]):
         rng, config = self.generator, self.config
         starts = self.crops.scenes
         counts = starts[1:] - starts[:-1]
-        objects = int(counts.max())
+        # Of scenes with equally many blocks, those of which there are most.
+        objects = int(counts.bincount().argmax())
         full = torch.nonzero(counts == objects)[:, 0]
         picked = full[torch.randint(0, len(full), (config.batch_scenes,), generator=rng)]
         index = (starts[picked, None] + torch.arange(objects)).flatten()
