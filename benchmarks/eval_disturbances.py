@@ -12,27 +12,24 @@ from __future__ import annotations
 
 import argparse
 import json
-import signal
 import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-import rclpy
-import side_by_side
+import campaign
 from faults.fault import Ending
 from faults.moment_report import command_of, details, is_good, make_rows
 from faults.random_moment import KINDS, NOTHING, MomentResult, run_at_random_moment, to_json
 from faults.setting import Graph, Setting
-from rclpy.signals import SignalHandlerOptions
 from results_file import print_rows, quick, write_result
-from tamp_runtime.node_process import prepare_process
 from tqdm import tqdm
 
 from planner_node.settings import END, VERIFY, WATCH
-from tamp_bringup.processes import NodeDiedError, use_own_domain
+from tamp_bringup.processes import NodeDiedError
 from tamp_bringup.scene_observer import SimulationError
 
 FIRST_SEED: Final = 1000
@@ -74,7 +71,7 @@ def plan_tasks(
     return tasks
 
 
-def run_tasks(tasks: Sequence[Task], real_time_factor: float, share: int = 0) -> None:
+def run_tasks(real_time_factor: float, tasks: Sequence[Task], share: int) -> None:
     """Runs those whose results are not there yet; each result goes into its file."""
     left = [task for task in tasks if not task.path.exists()]
     folder, done = FOLDER / f"graph{share}", len(tasks) - len(left)
@@ -105,20 +102,6 @@ def _try(setting: Setting, task: Task) -> tuple[dict[str, Any], bool]:
         ), False
 
 
-def run_share(tasks: Sequence[Task], real_time_factor: float, share: int = 0) -> bool:
-    """:func:`run_tasks` with a ROS context of its own; whether it came to its end."""
-    use_own_domain()
-    prepare_process()
-    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-    try:
-        run_tasks(tasks, real_time_factor, share)
-    except KeyboardInterrupt:
-        return False
-    finally:
-        rclpy.try_shutdown()
-    return True
-
-
 def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--kind", default="", help=f"of {', '.join((*KINDS, NOTHING))}: a,b")
@@ -127,9 +110,7 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--quiet", type=int, default=100, help="tasks that nobody disturbs")
     parser.add_argument("--seed", type=int, help="one task a kind with this seed")
     parser.add_argument("--real-time-factor", type=float, default=1.0)
-    side_by_side.add_arguments(parser)
-    parser.add_argument("--resume", action="store_true", help="keep the tasks done so far")
-    parser.add_argument("--report", action="store_true", help="only write what has been measured")
+    campaign.add_arguments(parser)
     options = parser.parse_args()
     options.kinds = options.kind.split(",") if options.kind else [*KINDS, NOTHING]
     options.verify = options.verify.split(",")
@@ -146,31 +127,10 @@ def main() -> int:
     options = parse_arguments()
     tasks = plan_tasks(options.kinds, options.verify, options.n, options.quiet, options.seed)
     single = bool(options.kind or options.seed is not None)
-    AGAIN.mkdir(parents=True, exist_ok=True)
-    if not options.resume and not options.report:
-        for task in tasks:
-            task.path.unlink(missing_ok=True)
     started = time.monotonic()
-    # Where a script put this into the background, SIGINT is ignored.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    if options.share is not None:
-        mine = side_by_side.share_of(tasks, options)
-        return 0 if run_share(mine, options.real_time_factor, options.share) else 130
-    if not options.report:
-        whole = (
-            side_by_side.run_shares(options.jobs)
-            if options.jobs > 1
-            else run_share(tasks, options.real_time_factor)
-        )
-        if not whole:
-            print("\nstopped; RESUME=1 goes on with the tasks that are left")
-            return 130
-    records: list[dict[str, Any]] = [
-        json.loads(task.path.read_text()) for task in tasks if task.path.exists()
-    ]
-    if not records:
-        print("nothing has been measured yet", file=sys.stderr)
-        return 1
+    records = campaign.run_campaign(tasks, options, partial(run_tasks, options.real_time_factor))
+    if isinstance(records, int):
+        return records
     rows = make_rows(records)
     print_rows(rows)
     if single:

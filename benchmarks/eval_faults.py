@@ -13,19 +13,18 @@ from __future__ import annotations
 
 import argparse
 import json
-import signal
 import sys
 import time
 import traceback
 import zlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
 
-import rclpy
-import side_by_side
+import campaign
 from faults.catalogue import CATALOGUE, UnknownFaultError, faults_named
 from faults.fault import Fault, Parameters, Phase
 from faults.numbered import numbered_table, tests_that_name
@@ -33,12 +32,9 @@ from faults.report import command_of, dictionary, make_rows, problems
 from faults.setting import Graph, Setting
 from faults.topics import groups_of
 from faults.trial import TrialResult, last_lines, run_trial, to_json
-from rclpy.signals import SignalHandlerOptions
 from results_file import print_rows, quick, write_result
-from tamp_runtime.node_process import prepare_process
 from tqdm import tqdm
 
-from tamp_bringup.processes import use_own_domain
 from tamp_bringup.scene_observer import SimulationError
 
 FIRST_SEED: Final = 1000
@@ -96,7 +92,7 @@ def plan_tasks(
     return sorted(tasks, key=lambda task: task.graph)
 
 
-def run_tasks(tasks: Sequence[Task], real_time_factor: float, share: int = 0) -> None:
+def run_tasks(real_time_factor: float, tasks: Sequence[Task], share: int) -> None:
     """Runs those whose results are not there yet; each result goes into its file.
 
     Args:
@@ -110,20 +106,6 @@ def run_tasks(tasks: Sequence[Task], real_time_factor: float, share: int = 0) ->
             while waiting:
                 with Graph(folder, groups, real_time_factor, parameters) as setting:
                     waiting = _until_poisoned(setting, waiting, progress)
-
-
-def run_share(tasks: Sequence[Task], real_time_factor: float, share: int = 0) -> bool:
-    """:func:`run_tasks` with a ROS context of its own; whether it came to its end."""
-    use_own_domain()
-    prepare_process()
-    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-    try:
-        run_tasks(tasks, real_time_factor, share)
-    except KeyboardInterrupt:
-        return False
-    finally:
-        rclpy.try_shutdown()
-    return True
 
 
 def _until_poisoned(setting: Setting, tasks: list[Task], progress: Any) -> list[Task]:
@@ -165,9 +147,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, help="one trial a kind with this seed")
     parser.add_argument("--trials", type=int, default=5, help="of each kind")
     parser.add_argument("--real-time-factor", type=float, default=4.0)
-    side_by_side.add_arguments(parser)
-    parser.add_argument("--resume", action="store_true", help="keep the trials done so far")
-    parser.add_argument("--report", action="store_true", help="only write what has been measured")
+    campaign.add_arguments(parser)
     options = parser.parse_args()
     try:
         faults = faults_named(options.only)
@@ -179,30 +159,11 @@ def main() -> int:
     tasks = plan_tasks(faults, options.trials, options.phase, options.seed)
     if not tasks:
         parser.error("no trial fits; which phases a fault has stands in docs/results.md")
-    AGAIN.mkdir(parents=True, exist_ok=True)
     single = bool(options.only or options.phase or options.seed is not None)
-    if not options.resume and not options.report:
-        for task in tasks:
-            task.path.unlink(missing_ok=True)
     started = time.monotonic()
-    # Where a script put this into the background, SIGINT is ignored.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    if options.share is not None:
-        mine = side_by_side.share_of(tasks, options)
-        return 0 if run_share(mine, options.real_time_factor, options.share) else 130
-    if not options.report:
-        whole = (
-            side_by_side.run_shares(options.jobs)
-            if options.jobs > 1
-            else run_share(tasks, options.real_time_factor)
-        )
-        if not whole:
-            print("\nstopped; RESUME=1 goes on with the trials that are left")
-            return 130
-    trials = [json.loads(task.path.read_text()) for task in tasks if task.path.exists()]
-    if not trials:
-        print("nothing has been measured yet", file=sys.stderr)
-        return 1
+    trials = campaign.run_campaign(tasks, options, partial(run_tasks, options.real_time_factor))
+    if isinstance(trials, int):
+        return trials
     rows = make_rows(trials)
     bad = [trial for trial in trials if problems(trial)]
     for trial in bad:
