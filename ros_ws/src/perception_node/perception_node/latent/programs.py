@@ -206,8 +206,8 @@ class ProgramNetwork(nn.Module):
         if skeleton[-1][0] == "exist":
             return self._yes_no(logits, 2.0 * self.sharpness * (number - 0.5))
         counts = [answer for answer in self._answers if answer.isdigit()]
-        values = number.new_tensor([float(answer) for answer in counts])
-        return self._words(logits, counts, -self.sharpness * (number[:, None] - values).square())
+        told = number.new_tensor([float(answer) for answer in counts])
+        return self._words(logits, counts, -self.sharpness * (number[:, None] - told).square())
 
     def _beside(self, scene: Seen, owners: Tensor, anchor: Tensor, kinds: Tensor) -> Tensor:
         """Probability (g, 1024) that what is at a place stands so to the thing at an anchor."""

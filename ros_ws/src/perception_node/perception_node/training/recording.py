@@ -60,7 +60,10 @@ class Recorder:
         covered = segments.union()
         if not self._is_new(covered):
             return False
-        arrays = {"rgb": observation.rgb, "labels": segments.label_image.astype(np.uint16)}
+        arrays: dict[str, NDArray[Any]] = {
+            "rgb": observation.rgb,
+            "labels": segments.label_image.astype(np.uint16),
+        }
         if observation.depth is not None:
             arrays["depth"] = observation.depth.astype(np.float32)
         if self._waiting and _shapes(self._waiting[0]) != _shapes(arrays):
@@ -79,11 +82,11 @@ class Recorder:
         path = self.folder / f"shard_{self._next:04d}.npz"
         partial = self.folder / "part.npz"
         try:
-            np.savez_compressed(
-                partial,
-                **{name: np.stack([picture[name] for picture in self._waiting])
-                   for name in self._waiting[0]},
-            )  # fmt: skip
+            arrays: dict[str, Any] = {
+                name: np.stack([picture[name] for picture in self._waiting])
+                for name in self._waiting[0]
+            }
+            np.savez_compressed(partial, **arrays)
             partial.rename(path)
         except OSError as error:
             raise DatasetError(f"{path} cannot be written: {error}") from error
