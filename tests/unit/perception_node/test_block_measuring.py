@@ -207,3 +207,23 @@ def test_the_noise_of_a_plane_is_found_to_fifteen_percent(
 def test_exact_pictures_and_such_without_depth_have_no_noise() -> None:
     assert depth_noise(cast([], CAMERA)[0]) < 1e-6
     assert depth_noise(np.zeros((64, 64))) == 0.0
+
+
+def shape_and_rival(shape: str, seed: int, noise: float) -> tuple[str, str]:
+    """What one block is taken for, and may be as well."""
+    rng = np.random.default_rng(seed)
+    solids = tower(int(rng.integers(3)), [shape], float(rng.uniform(-0.7, 0.7)))
+    (block,) = measure(solids, [[0]], noise, seed)
+    return block.shape, block.rival
+
+
+@pytest.mark.parametrize("shape", [BOX, CYLINDER])
+@pytest.mark.parametrize("seed", range(6))
+def test_the_depth_of_a_real_camera_tells_boxes_from_cylinders(shape: str, seed: int) -> None:
+    assert shape_and_rival(shape, seed, 0.0015) == (shape, "")
+
+
+def test_noise_that_hides_a_shape_makes_it_doubtful_before_it_makes_it_wrong() -> None:
+    found = [shape_and_rival(CYLINDER, seed, 0.0045) for seed in range(60)]
+    assert all(CYLINDER in one for one in found)
+    assert (CYLINDER, BOX) in found and (CYLINDER, "") in found

@@ -116,3 +116,10 @@ def test_doubt_is_the_last_reason() -> None:
     assert status is GraphStatus.LOW_CONFIDENCE
     assert "red_box with a confidence of only 0.50 (required: 0.60)" in message
     assert verdict(block(), block(bottom=0.09), confidence=0.5)[0] is GraphStatus.UNSTABLE
+
+
+def test_a_block_that_may_have_another_shape_is_doubtful() -> None:
+    unclear = replace(block(bottom=0.04), rival="cylinder")
+    status, message = verdict(block(), unclear)
+    assert status is GraphStatus.LOW_CONFIDENCE
+    assert message.startswith("blue_box may as well be a cylinder")

@@ -49,6 +49,8 @@ def judge(
         return Verdict(GraphStatus.UNSTABLE, sentence)
     if names.doubt:
         return Verdict(GraphStatus.LOW_CONFIDENCE, names.doubt)
+    if sentence := unclear_shape(blocks, names.names):
+        return Verdict(GraphStatus.LOW_CONFIDENCE, sentence)
     if sentence := doubtful(blocks, names.names, config.limits):
         return Verdict(GraphStatus.LOW_CONFIDENCE, sentence)
     if graph.confidence < config.min_confidence:
@@ -148,6 +150,17 @@ def doubtful(blocks: Blocks, names: tuple[str, ...], limits: StabilityLimits) ->
         f"{1000 * deviations[worst]:.1f} mm only (required: {1000 * limits.doubt:.1f} mm); look "
         "from another side or from higher up"
     )
+
+
+def unclear_shape(blocks: Blocks, names: tuple[str, ...]) -> str:
+    """A sentence about the first block that may as well have another shape, or an empty string."""
+    for block, name in zip(blocks.measured, names):
+        if block.rival:
+            return (
+                f"{name} may as well be a {block.rival}: both fit what is seen of it; look from "
+                "another side, from higher up or from nearer"
+            )
+    return ""
 
 
 def _height_text(gap: float, under: str, on_table: bool) -> str:

@@ -56,12 +56,14 @@ class MeasuredBlock:
         tilt: see :class:`BlockSurface` [rad].
         deviation: standard deviations of x, y, z of the centre [m], of yaw [rad] and of the size
             along its own x, y, z [m], shape (7,).
+        rival: see :class:`BlockSurface`.
     """
 
     shape: str
     pose: BlockPose
     tilt: float = 0.0
     deviation: tuple[float, ...] = (0.0,) * 7
+    rival: str = ""
 
 
 @dataclass
@@ -191,4 +193,5 @@ def _posed(surface: BlockSurface, estimate: _Estimate) -> MeasuredBlock:
         ),
         surface.tilt,
         tuple(estimate.of(row)[1] for row in rows),
+        surface.rival,
     )
