@@ -15,7 +15,7 @@ from tamp_runtime.qos import LATCHED, RELIABLE
 from trajectory_msgs.msg import JointTrajectory
 
 from motion_node.node import MotionNode
-from motion_node.robots import PANDA
+from motion_node.robots import ARMS
 from perception_node.node import PerceptionNode
 from planner_node.cli.client import PlannerClient
 from planner_node.node import PlannerNode
@@ -48,13 +48,17 @@ class Listener(Node):
 
 
 @pytest.mark.timeout(600)
-def test_two_controllers_build_a_tower_that_the_simulator_confirms(ros_context: Any) -> None:
-    context, apart = ros_context.context, Parameter("gripper_apart", value=True)
+@pytest.mark.parametrize("robot", sorted(ARMS))
+def test_two_controllers_build_a_tower_that_the_simulator_confirms(
+    ros_context: Any, robot: str
+) -> None:
+    context = ros_context.context
+    apart = [Parameter("gripper_apart", value=True), Parameter("robot", value=robot)]
     follow_clock = [Parameter("use_sim_time", value=True)]
     # On a busy machine a message may be on its way for long.
-    motion = [*follow_clock, apart, Parameter("start_lead", value=3.0)]
+    motion = [*follow_clock, *apart, Parameter("start_lead", value=3.0)]
     layout = Parameter("layout", value=LAYOUT)
-    ros_context.add(SimNode(context=context, parameter_overrides=[layout, apart]))
+    ros_context.add(SimNode(context=context, parameter_overrides=[layout, *apart]))
     for kind in (PerceptionNode, PlannerNode):
         ros_context.add(kind(context=context, parameter_overrides=follow_clock))
     ros_context.add(MotionNode(context=context, parameter_overrides=motion))
@@ -67,6 +71,6 @@ def test_two_controllers_build_a_tower_that_the_simulator_confirms(ros_context: 
     assert listener.stacks()[2][:2] == ("green_box", "red_box")
     assert len(listener.arm) == len(listener.gripper) > 0
     for arm, gripper in zip(listener.arm, listener.gripper):
-        assert tuple(arm.joint_names) == PANDA.arm_joints
-        assert tuple(gripper.joint_names) == PANDA.gripper.finger_joints
+        assert tuple(arm.joint_names) == ARMS[robot].arm_joints
+        assert tuple(gripper.joint_names) == ARMS[robot].gripper.finger_joints
         assert arm.header.stamp == gripper.header.stamp

@@ -44,7 +44,7 @@ def test_every_mesh_is_a_file() -> None:
 
 def test_every_link_but_the_root_hangs_on_one_joint() -> None:
     root = ElementTree.parse(KUKA_IIWA.urdf).getroot()
-    children = [element.get("link") for element in root.iter("child")]
+    children = [element.get("link", "") for element in root.iter("child")]
     assert sorted(children) == sorted(set(links(KUKA_IIWA.urdf)) - {"lbr_iiwa_link_0"})
 
 
