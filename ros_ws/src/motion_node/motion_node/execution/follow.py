@@ -180,7 +180,7 @@ class Follower:
         watched, stepping = self.settings.monitor, self.settings.in_step
         if stepping:
             begins = first_moment(self._arm, state, patience, self._missing, self.settings)
-            in_step = InStep(trajectory, begins, stepping)
+            in_step, state = InStep(trajectory, begins, stepping), self._arm.newest() or state
             watched = replace(watched, max_lag=min(watched.max_lag, stepping.apart))
         monitor = Monitor(trajectory, state, watched)
         begin, self._trajectory, self.time = self._arm.now(), trajectory, 0.0

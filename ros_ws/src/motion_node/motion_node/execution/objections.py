@@ -57,10 +57,8 @@ def objection(
     if verdict in (Verdict.FINGERS_TOO_WIDE, Verdict.FINGERS_TOO_NARROW):
         assert expected is not None
         low, high = (2000 * opening for opening in expected)
-        sentence = (
-            f"the fingers stand {apart:.0f} mm apart where {low:.0f} to {high:.0f} mm are due by "
-            f"now ({doing})"
-        )
+        due = f"{low:.0f} to {high:.0f} mm" if np.isfinite(high) else f"{low:.0f} mm or more"
+        sentence = f"the fingers stand {apart:.0f} mm apart where {due} are due by now ({doing})"
     elif verdict is Verdict.NOT_OPENED and block is not None:
         sentence = (
             f"the fingers did not open: they stand {apart:.0f} mm apart and still hold "
@@ -78,10 +76,10 @@ def objection(
         )
     elif verdict is Verdict.GRASP_LOST:
         held = "what they held" if phase.tool.held == SOMETHING else phase.tool.held
-        sentence = f"the fingers closed on nothing or lost {held}"
+        sentence, of_gripper = f"the fingers closed on nothing or lost {held}", ""
     else:
         sentence = f"{_SENTENCES[verdict]} ({doing}){'' if state.stamped else _NO_STAMPS}"
-        if verdict not in (Verdict.UNSEEN, Verdict.CLOCK_WENT_BACK):
+        if verdict in (Verdict.NOT_STARTED, Verdict.BEHIND, Verdict.ARM_OUT_OF_STEP):
             sentence += of_arm
         return ExecutionError(MotionReason.TRACKING_LOST, sentence, recoverable=True)
     return ExecutionError(MotionReason.GRASP_LOST, sentence + of_gripper, recoverable=True)
