@@ -2,7 +2,8 @@
 """Another arm: the KUKA iiwa that pybullet ships, with Franka's hand screwed to its flange.
 
 All that the motion problem knows of an arm beyond its URDF is one value. In the project itself it
-is a file in motion_node/robots/ and an entry in ``ARMS``, and the parameter ``robot`` selects it.
+is a file in motion_node/robots/ and an entry in ``ARMS``, and the parameter ``robot`` selects it;
+by now this arm stands there too, measured more carefully, as `kuka_iiwa`.
 
     python examples/another_arm.py
 """

@@ -21,6 +21,7 @@ LABELS: Final = "camera/segmentation"
 INFO: Final = "camera/camera_info"
 EXTRINSICS: Final = "camera/extrinsics"
 TRAJECTORY: Final = "joint_trajectory"
+GRIPPER: Final = "gripper_trajectory"
 JOINTS: Final = "joint_states"
 STATUSES: Final = "motion_status"
 PLAN: Final = "symbolic_plan"
@@ -63,6 +64,7 @@ TOPICS: Final = {
         Topic(INFO, CameraInfo, NEWEST, ("perception_node",), "camera"),
         Topic(EXTRINSICS, TransformStamped, LATCHED, ("perception_node",), "camera", lasting=True),
         Topic(TRAJECTORY, JointTrajectory, RELIABLE, ("sim_node",), "arm"),
+        Topic(GRIPPER, JointTrajectory, RELIABLE, ("sim_node",), "gripper"),
         Topic(JOINTS, JointState, SENSOR_DATA, ("motion_node",), "arm"),
         Topic(STATUSES, MotionStatus, STATUS, ("planner_node",), "messages"),
         Topic(PLAN, SymbolicPlan, LATCHED, ("motion_node",), "messages"),

@@ -12,6 +12,7 @@ SOURCES = Path(__file__).parents[2] / "ros_ws" / "src"
 ROS_PARTS = (
     *("node", "conversions", "parameters", "executable", "cli", "messages"),
     *("image_client", "latent_view", "plan_publisher", "topics", "camera_topics"),
+    "trajectory_topics",
 )
 #: Packages that are ROS throughout, but for the modules named.
 ROS_PACKAGES = {"tamp_runtime": ("motion_report",), "tamp_bringup": ("task", "plan_picture")}

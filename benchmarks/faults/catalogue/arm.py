@@ -8,10 +8,12 @@ from faults.fault import ALL_PHASES, MOVING_PHASES, Fault, Phase
 from faults.injections import Damaged
 from faults.modes import Change, Delay, Drop, Freeze, FreezeContent, Repeat
 from faults.relay import Mode
-from faults.topics import JOINTS, TRAJECTORY
+from faults.topics import GRIPPER, JOINTS, TRAJECTORY
 
 #: The trajectory is sent at the end of OPTIMISE: a fault of it must be there before.
 _BEFORE = (Phase.PERCEIVE, Phase.OPTIMISE)
+#: Arm and gripper with a controller each.
+_APART = (("sim_node", "gripper_apart", True), ("motion_node", "gripper_apart", True))
 _FOLLOWS = ("trajectory", "controller", "path", "does not start", "behind")
 
 
@@ -20,6 +22,11 @@ def _trajectory(name: str, what: str, mode: Mode, *words: str, transient: bool =
         name, what, Damaged((TRAJECTORY,), mode), _BEFORE, (words or _FOLLOWS,),
         transient=transient,
     )  # fmt: skip
+
+
+def _apart(name: str, what: str, topic: str, mode: Mode) -> Fault:
+    words = ((topic,),)
+    return Fault(name, what, Damaged((topic,), mode), _BEFORE, words, parameters=_APART)
 
 
 def _joints(name: str, what: str, mode: Mode, *words: str) -> Fault:
@@ -66,6 +73,17 @@ FAULTS = (
         "fingers-stay-open-once", "the fingers stay open in the first trajectory",
         Change(d.fingers_kept_at(0.04), first=1), transient=True,
     ),
+    _apart("apart-arm-lost", "the arm's controller gets nothing, the gripper's all",
+           TRAJECTORY, Drop()),
+    _apart("apart-arm-late", "the arm's controller gets everything 1 s late", TRAJECTORY, Delay(1)),
+    _apart("apart-arm-very-late", "the arm's controller gets everything 6 s late",
+           TRAJECTORY, Delay(6)),
+    _apart("apart-gripper-lost", "the gripper's controller gets nothing, the arm's all",
+           GRIPPER, Drop()),
+    _apart("apart-gripper-late", "the gripper's controller gets everything 1 s late",
+           GRIPPER, Delay(1)),
+    _apart("apart-gripper-very-late", "the gripper's controller gets everything 6 s late",
+           GRIPPER, Delay(6)),
     _joints("joints-lost", "no joint_states arrive", Drop(), "joint_states"),
     _hiccup("joints-lost-2s", "no joint_states arrive for 2 s", Drop(), 2.0),
     _hiccup("joints-lost-5s", "no joint_states arrive for 5 s", Drop(), 5.0),

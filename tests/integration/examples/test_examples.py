@@ -15,6 +15,7 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 #: Something that each prints if it works, and what it writes.
 EXPECTED = {
     "another_arm": "place blue_box",
+    "gripper_action_behind_a_topic": "calls of the gripper)",
     "graph_in_process": "the camera confirms 'red_box on green_box'",
     "optimise_a_plan": "plotted into",
     "own_constraint": "room for red_box below the shelf is violated",

@@ -20,8 +20,8 @@ from motion_node.execution.settings import ExecutionSettings
 class Bench:
     """An executive with its neighbours, and what it reported."""
 
-    def __init__(self) -> None:
-        self.arm, self.planner = SimulatedArm(), FakePlanner()
+    def __init__(self, arm: SimulatedArm | None = None) -> None:
+        self.arm, self.planner = arm or SimulatedArm(), FakePlanner()
         self.reports: list[MotionReport] = []
         self.stop, self.plan = threading.Event(), PLAN
         self.planners: Iterator[FakePlanner | None] = iter(lambda: self.planner, 0)

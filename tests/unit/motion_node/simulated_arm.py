@@ -216,7 +216,7 @@ class SimulatedArm:
 
     # The controller
 
-    def send(self, trajectory: Trajectory) -> None:
+    def send(self, trajectory: Trajectory, _begins: float | None = None) -> None:
         self.sent.append((trajectory, self.joints))
         jump = float(np.abs(trajectory.positions.arm[0] - self.joints.arm).max())
         if self.deaf or jump > 0.1:
@@ -230,8 +230,8 @@ class SimulatedArm:
         assert self._time < 1e6, "nobody ends this"
         if not (self.frozen_clock or self.standing):
             self._stamp += self.PERIOD
-        if self._following is not None and not self.stuck:
-            where, _ = self._following.sample(self._stamp - self._began)
+        where = None if self.stuck else self._commanded()
+        if where is not None:
             fingers = np.maximum(where.fingers, self.block)
             if self.fingers_stuck_at >= 0.0:
                 fingers = np.full(2, self.fingers_stuck_at)
@@ -246,3 +246,9 @@ class SimulatedArm:
             seen = self._seen if self.frozen else self.joints
             self._seen = seen
             self._box.put(self._stamp, JointValues(seen.arm + self.trembling / 2, seen.fingers))
+
+    def _commanded(self) -> JointValues | None:
+        """Where the joints are told to be now."""
+        if self._following is None:
+            return None
+        return self._following.sample(self._stamp - self._began)[0]

@@ -65,7 +65,7 @@ class PhysicalArm:
             self.stop.set()
         self._box.put(self._world.time, JointValues(*joints))
 
-    def send(self, trajectory: Trajectory) -> None:
+    def send(self, trajectory: Trajectory, _begins: float | None = None) -> None:
         if self.cut:
             trajectory = trajectory.cut(0.0, self.cut.pop(0) * trajectory.duration)
         positions, velocities = trajectory.positions.joined(), trajectory.velocities.joined()

@@ -42,7 +42,7 @@ def test_a_world_starts_at_home_with_open_fingers(name: str) -> None:
 def test_values_of_all_joints_stand_in_the_order_of_the_joints() -> None:
     model = SimulatedArm(
         name="small",
-        urdf=next(iter(SIMULATED_ARMS.values())).urdf,
+        description=next(iter(SIMULATED_ARMS.values())).urdf,
         arm_joints=("a", "b", "c"),
         finger_joints=("left", "right"),
         home=(0.1, 0.2, 0.3),
@@ -62,4 +62,4 @@ def test_an_unknown_robot_is_refused_with_the_known_ones() -> None:
     (spec,) = (spec for spec in PARAMETERS if spec.name == "robot")
     assert spec.read_only
     assert spec.problem(spec.default) == ""
-    assert spec.problem("r2d2") == "robot = 'r2d2' is not a known arm; known: panda"
+    assert spec.problem("r2d2") == "robot = 'r2d2' is not a known arm; known: kuka_iiwa, panda"

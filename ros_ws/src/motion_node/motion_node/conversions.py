@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import NDArray
 from sensor_msgs.msg import JointState
 from tamp_interfaces.msg import SymbolicPlan
 from tamp_runtime.messages.scene_graph import graph_from_message, moves_from_messages
-from tamp_runtime.messages.stamps import duration_from_seconds
+from tamp_runtime.messages.stamps import duration_from_seconds, stamp_from_nanoseconds
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from .errors import InvalidPlanError, JointStateError
@@ -15,6 +18,8 @@ from .execution.plan import Plan
 from .robots import Arm
 from .robots.joints import JointValues
 from .timing.trajectory import Trajectory
+
+Array = NDArray[np.float64]
 
 
 def plan_from_message(message: SymbolicPlan) -> Plan:
@@ -28,21 +33,46 @@ def plan_from_message(message: SymbolicPlan) -> Plan:
         graph=graph,
         moves=moves_from_messages(message.moves),
         object_names=tuple(move.object_name for move in message.moves),
+        frame=message.initial.header.frame_id or message.header.frame_id,
     )
 
 
 def trajectory_to_message(trajectory: Trajectory, arm: Arm) -> JointTrajectory:
     """Names all joints; the stamp stays zero, which asks the controller to start at once."""
-    message = JointTrajectory(joint_names=list(arm.joint_names))
-    positions = trajectory.positions.joined().tolist()
-    velocities = trajectory.velocities.joined().tolist()
+    positions, velocities = trajectory.positions.joined(), trajectory.velocities.joined()
+    return _message(arm.joint_names, trajectory.times, positions, velocities)
+
+
+def trajectory_to_two_messages(
+    trajectory: Trajectory, arm: Arm, begins: float | None
+) -> tuple[JointTrajectory, JointTrajectory]:
+    """One that names the arm's joints, and one that names the fingers', with the same stamp.
+
+    Args:
+        begins: when it starts, by the clock of the controllers [s]; None: at once.
+    """
+    times, positions, velocities = trajectory.times, trajectory.positions, trajectory.velocities
+    messages = (
+        _message(arm.arm_joints, times, positions.arm, velocities.arm),
+        _message(arm.gripper.finger_joints, times, positions.fingers, velocities.fingers),
+    )
+    if begins is not None:
+        for message in messages:
+            message.header.stamp = stamp_from_nanoseconds(round(begins * 1e9))
+    return messages
+
+
+def _message(
+    names: Sequence[str], times: Array, positions: Array, velocities: Array
+) -> JointTrajectory:
+    message = JointTrajectory(joint_names=list(names))
     message.points = [
         JointTrajectoryPoint(
             positions=position,
             velocities=velocity,
             time_from_start=duration_from_seconds(time),
         )
-        for time, position, velocity in zip(trajectory.times.tolist(), positions, velocities)
+        for time, position, velocity in zip(times.tolist(), positions.tolist(), velocities.tolist())
     ]
     return message
 

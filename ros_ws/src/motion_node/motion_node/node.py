@@ -12,6 +12,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tamp_interfaces.msg import MotionStatus, SymbolicPlan
@@ -25,14 +26,21 @@ from tamp_runtime.qos import LATCHED, RELIABLE, SENSOR_DATA, STATUS
 from tamp_runtime.stream_thread import StreamThread
 from trajectory_msgs.msg import JointTrajectory
 
-from .conversions import joint_positions, plan_from_message, trajectory_to_message
+from .conversions import (
+    joint_positions,
+    plan_from_message,
+    trajectory_to_message,
+    trajectory_to_two_messages,
+)
 from .errors import JointStateError, MotionError
 from .execution.arm_state import ArmStateBox
 from .execution.condition import Condition
 from .execution.executive import Executive
 from .execution.follow import Follower
+from .execution.plan import Plan
 from .execution.settings import ExecutionSettings
 from .execution.worker import PlanWorker
+from .frames import check_frame
 from .obstacles import read_obstacles
 from .parameters import (
     PARAMETERS,
@@ -61,7 +69,10 @@ class MotionNode(Node):
         diagnostics (diagnostic_msgs/DiagnosticArray): who lives; with two nodes that do the work
             of one, plans are refused with the reason CONFLICT
     Publishes:
-        joint_trajectory (trajectory_msgs/JointTrajectory): starts at once, replaces the running one
+        joint_trajectory (trajectory_msgs/JointTrajectory): of all joints; starts at once, replaces
+            the running one. With gripper_apart of the arm's joints, and stamped with its start
+        gripper_trajectory (trajectory_msgs/JointTrajectory), with gripper_apart: of the fingers'
+            joints, with the same stamp
         motion_status (tamp_interfaces/MotionStatus, the newest ones are kept for late listeners):
             at every change, and once a second
         diagnostics (diagnostic_msgs/DiagnosticArray): that it lives
@@ -82,9 +93,12 @@ class MotionNode(Node):
         self._description = ""
 
         self._trajectories = self.create_publisher(JointTrajectory, "joint_trajectory", RELIABLE)
+        self._gripper: Publisher | None = None
+        if self._values["gripper_apart"]:
+            self._gripper = self.create_publisher(JointTrajectory, "gripper_trajectory", RELIABLE)
         self._statuses = self.create_publisher(MotionStatus, "motion_status", STATUS)
         self._presence = Presence(self, "motion_node")
-        follower = Follower(self._states, self._send, self._settings())
+        follower = Follower(self._states, self._send, self._settings(), self._missing_controller)
         condition = Condition(
             self._states,
             lambda: follower.grip,
@@ -100,6 +114,7 @@ class MotionNode(Node):
             condition,
             self._settings,
             self._presence.conflict,
+            self._check_frame,
         )
         self._worker = PlanWorker(
             executive, condition, self._publish, self._on_defect, self._presence.conflict
@@ -187,9 +202,28 @@ class MotionNode(Node):
 
     # What is said
 
-    def _send(self, trajectory: Trajectory) -> None:
-        if self.context.ok():
+    def _send(self, trajectory: Trajectory, begins: float | None) -> None:
+        if not self.context.ok():
+            return
+        if self._gripper is None:
             self._trajectories.publish(trajectory_to_message(trajectory, self._arm))
+            return
+        arm, fingers = trajectory_to_two_messages(trajectory, self._arm, begins)
+        self._gripper.publish(fingers)  # first: fingers that are to go on holding shall know
+        self._trajectories.publish(arm)
+
+    def _missing_controller(self) -> str:
+        """Which controller nobody hears for; empty: none."""
+        for whose, publisher in (("arm", self._trajectories), ("gripper", self._gripper)):
+            if publisher is not None and not publisher.get_subscription_count():
+                topic = publisher.topic_name
+                return f"nobody listens to {topic}; is the {whose}'s controller running?"
+        return ""
+
+    def _check_frame(self, plan: Plan) -> None:
+        assert self._planner is not None
+        root = self._planner.model.kinematics.root
+        check_frame(plan.frame, root, self._values["world_frame"])
 
     def _publish(self, report: MotionReport) -> None:
         if not self.context.ok():

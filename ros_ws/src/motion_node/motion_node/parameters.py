@@ -10,7 +10,7 @@ from typing import Any
 from tamp_runtime.parameters import ParameterSpec
 
 from .execution.monitor import MonitorSettings
-from .execution.settings import ExecutionSettings
+from .execution.settings import ExecutionSettings, StepSettings
 from .nlp import SOLVERS
 from .obstacles import ObstacleError, read_obstacles
 from .robots import ARMS, PANDA, Arm
@@ -18,6 +18,7 @@ from .settings import PathSettings, PhaseSettings, Settings
 from .timing.time_paths import TimingSettings
 
 _SETTINGS, _EXECUTION, _MONITOR = Settings(), ExecutionSettings(), MonitorSettings()
+_STEP = StepSettings()
 _PHASES, _PATH, _TIMING = _SETTINGS.phases, _SETTINGS.path, _SETTINGS.timing
 
 
@@ -63,6 +64,20 @@ PARAMETERS = (
         "File that says what stands around besides blocks; the arm and what it holds keep away.",
         read_only=True,
         check=_obstacles_problem,
+    ),
+    ParameterSpec(
+        "gripper_apart",
+        False,
+        "Arm and gripper have a controller each: the fingers' part of a trajectory goes to "
+        "gripper_trajectory, the arm's, with the same stamp, to joint_trajectory. false: all "
+        "joints in one message.",
+        read_only=True,
+    ),
+    ParameterSpec(
+        "world_frame",
+        "world",
+        "The frame besides the root of robot_description that plans may be in: the root stands in "
+        "its origin.",
     ),
     _spec(
         "velocity_scale",
@@ -238,6 +253,21 @@ PARAMETERS = (
         0.1,
         2.0,
     ),
+    _spec(
+        "start_lead",
+        _STEP.lead,
+        "With gripper_apart: how far ahead trajectories are stamped, so that both controllers have "
+        "them in time [s, wall time].",
+        0.0,
+        10.0,
+    ),
+    _spec(
+        "max_apart",
+        _STEP.apart,
+        "With gripper_apart: how far arm and gripper may each be from their trajectory's time [s].",
+        0.05,
+        10.0,
+    ),
 )
 
 
@@ -304,4 +334,7 @@ def execution_settings(values: Mapping[str, Any]) -> ExecutionSettings:
             goal_tolerance=values["goal_tolerance"],
             grasp_tolerance=values["grasp_tolerance"],
         ),
+        in_step=StepSettings(lead=values["start_lead"], apart=values["max_apart"])
+        if values["gripper_apart"]
+        else None,
     )

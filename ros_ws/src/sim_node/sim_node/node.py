@@ -17,13 +17,10 @@ from tamp_runtime.messages.stamps import nanoseconds, stamp_from_nanoseconds
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.presence import Presence
-from tamp_runtime.qos import RELIABLE
-from trajectory_msgs.msg import JointTrajectory
 
 from scene_graph import Stacks, format_stacks
 
-from .controller import ArmController
-from .conversions import trajectory_arrays
+from .controller import ArmController, CommandsMotors
 from .disturbance.conversions import request_from_message
 from .disturbance.disturber import Disturber
 from .disturbance.request import DisturbanceError
@@ -36,8 +33,9 @@ from .physics_thread import PhysicsError, PhysicsThread
 from .scene import load_scene
 from .sensor.parameters import sensor_from_parameters
 from .simulated_arms import SIMULATED_ARMS
+from .stock_controller import TwoControllers
 from .topics import SimTopics
-from .trajectory import TrajectoryError
+from .trajectory_topics import TrajectoryTopics
 from .world import World
 
 #: Physics steps between two joint states (60 Hz) and joint states between two pictures (10 Hz).
@@ -70,7 +68,10 @@ class SimNode(Node):
     Subscribes:
         joint_trajectory (trajectory_msgs/JointTrajectory): replaces the running one, at once or at
             the time of its stamp; a malformed or belated one is refused with a logged reason; one
-            without points stops the arm
+            without points stops the arm. With gripper_apart it commands the arm's joints alone, by
+            the rules of ros2_control's joint_trajectory_controller
+        gripper_trajectory (trajectory_msgs/JointTrajectory), with gripper_apart: the fingers, by
+            the same rules
         diagnostics (diagnostic_msgs/DiagnosticArray): of the other nodes
     Services:
         sim/reset (tamp_interfaces/ResetScene): drops every disturbance that is pending or under way
@@ -95,7 +96,8 @@ class SimNode(Node):
         self._topics = SimTopics(self, self._scene.cameras, sensor_from_parameters(values))
 
         self._world = World(self._scene, arm=SIMULATED_ARMS[values["robot"]])
-        self._arm = ArmController(self._world)
+        apart = values["gripper_apart"]
+        self._arm: CommandsMotors = (TwoControllers if apart else ArmController)(self._world)
         self._disturber = Disturber(self._world, self._arm, self.get_logger().info)
         self._world.reset(layout, values["seed"])
         self._topics.restart_pictures(values["seed"])
@@ -130,14 +132,7 @@ class SimNode(Node):
     # Set-up
 
     def _create_ears(self) -> None:
-        # One after the other: of two trajectories the later one must be the last to be followed.
-        self.create_subscription(
-            JointTrajectory,
-            "joint_trajectory",
-            self._on_trajectory,
-            RELIABLE,
-            callback_group=MutuallyExclusiveCallbackGroup(),
-        )
+        self._commands = TrajectoryTopics(self, self._arm, self._physics.post, self._step_at)
         # One at a time: callers who wait must not take all of the executor's threads.
         self.create_service(
             ResetScene,
@@ -163,26 +158,6 @@ class SimNode(Node):
         if any(name.startswith("sensor.") for name in values):
             sensor = sensor_from_parameters(self._values)
             self._physics.post(lambda: self._topics.configure(sensor))
-
-    def _on_trajectory(self, message: JointTrajectory) -> None:
-        def command() -> None:
-            try:
-                if not message.points:
-                    self._arm.stop()
-                    return
-                trajectory = self._arm.follow(
-                    message.joint_names,
-                    *trajectory_arrays(message),
-                    self._step_at(message.header.stamp),
-                )
-                self.get_logger().info(
-                    f"following a trajectory of {len(message.points)} points, "
-                    f"{trajectory.duration:.1f} s"
-                )
-            except TrajectoryError as error:
-                self.get_logger().error(f"joint_trajectory refused: {error}; the arm goes on")
-
-        self._physics.post(command)
 
     def _on_reset(
         self, request: ResetScene.Request, response: ResetScene.Response

@@ -44,6 +44,13 @@ PARAMETERS: Final = (
         "robot", PANDA.name, "which arm stands there", read_only=True, check=_robot_problem
     ),
     ParameterSpec(
+        "gripper_apart",
+        False,
+        "two controllers as ros2_control has them: the arm's, which hears joint_trajectory, and "
+        "the gripper's, which hears gripper_trajectory; false: one of all joints",
+        read_only=True,
+    ),
+    ParameterSpec(
         "mesh_uris",
         BOXES,
         "what robot_description says of the arm's meshes: boxes around them, which every machine "

@@ -33,6 +33,7 @@ from .sensor import (
     sense,
 )
 from .simulated_arms import SIMULATED_ARMS, SimulatedArm
+from .stock_controller import TwoControllers
 from .trajectory import JointLimits, Trajectory, TrajectoryError
 from .urdf import robot_description
 from .world import World
@@ -57,6 +58,7 @@ __all__ = [
     "SimulatedArm",
     "Trajectory",
     "TrajectoryError",
+    "TwoControllers",
     "World",
     "all_layouts",
     "check_layout",

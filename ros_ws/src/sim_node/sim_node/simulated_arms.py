@@ -12,6 +12,7 @@ import numpy as np
 import pybullet_data
 from numpy.typing import NDArray
 
+from .mounted_hand import MountedHand, with_hand
 from .scene import ArmConfig, SceneError
 
 
@@ -23,7 +24,7 @@ class SimulatedArm:
 
     Attributes:
         name: what the parameter ``robot`` calls it.
-        urdf: its description; meshes in it are relative to its folder.
+        description: its URDF; meshes in it are relative to its folder.
         arm_joints: names of the arm's joints from the base.
         finger_joints: names of the fingers' two joints, which move by the same distance.
         home: position of the arm after a reset: hand up and back, no block hidden [rad].
@@ -32,10 +33,11 @@ class SimulatedArm:
         arm_start_tolerance, finger_start_tolerance: how far a trajectory's first point may be
             from the present state [rad, m]; fingers that hold a block are away from their target
             by the squeeze.
+        hand: what is screwed to it; None: the URDF has it.
     """
 
     name: str
-    urdf: Path
+    description: Path
     arm_joints: tuple[str, ...]
     finger_joints: tuple[str, str]
     home: tuple[float, ...]
@@ -44,6 +46,12 @@ class SimulatedArm:
     finger_gain: float
     arm_start_tolerance: float
     finger_start_tolerance: float
+    hand: MountedHand | None = None
+
+    @property
+    def urdf(self) -> Path:
+        """The URDF of arm and hand; raises OSError if it cannot be read or made."""
+        return with_hand(self.description, self.hand) if self.hand else self.description
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -72,10 +80,12 @@ class SimulatedArm:
         return np.full(len(self.finger_joints), value)
 
 
+_DATA: Final = Path(pybullet_data.getDataPath())
+
 #: Franka Emika Panda with its hand, as pybullet ships it.
 PANDA: Final = SimulatedArm(
     name="panda",
-    urdf=Path(pybullet_data.getDataPath()) / "franka_panda" / "panda.urdf",
+    description=_DATA / "franka_panda" / "panda.urdf",
     arm_joints=tuple(f"panda_joint{number}" for number in range(1, 8)),
     finger_joints=("panda_finger_joint1", "panda_finger_joint2"),
     home=(0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785),
@@ -86,8 +96,34 @@ PANDA: Final = SimulatedArm(
     finger_start_tolerance=0.05,
 )
 
+#: KUKA LBR iiwa 7 with Franka's hand; the speeds are KUKA's, those of pybullet's URDF are not.
+KUKA_IIWA: Final = SimulatedArm(
+    name="kuka_iiwa",
+    description=_DATA / "kuka_iiwa" / "model.urdf",
+    arm_joints=tuple(f"lbr_iiwa_joint_{number}" for number in range(1, 8)),
+    finger_joints=PANDA.finger_joints,
+    home=(0.0, 0.0, 0.0, -1.571, 0.0, 1.571, 0.0),
+    fingers_open=0.04,
+    arm_gain=0.4,
+    finger_gain=0.2,
+    arm_start_tolerance=0.1,
+    finger_start_tolerance=0.05,
+    hand=MountedHand(
+        PANDA.description,
+        root="panda_hand",
+        flange="lbr_iiwa_link_7",
+        distance=0.045,
+        velocities=tuple(
+            (f"lbr_iiwa_joint_{number}", speed)
+            for number, speed in enumerate((1.71, 1.71, 1.74, 2.26, 2.44, 3.14, 3.14), start=1)
+        ),
+    ),
+)
+
 #: By the name that the parameter ``robot`` takes; an arm is added here.
-SIMULATED_ARMS: Final[Mapping[str, SimulatedArm]] = {model.name: model for model in (PANDA,)}
+SIMULATED_ARMS: Final[Mapping[str, SimulatedArm]] = {
+    model.name: model for model in (PANDA, KUKA_IIWA)
+}
 
 
 def arm_of_scene(config: ArmConfig, otherwise: SimulatedArm) -> SimulatedArm:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Final, Protocol
 
 from ..robots.joints import JointValues
+from .clock_rate import ClockRate
 from .lived_time import LivedTime
 from .shaking import Shaking
 
@@ -28,6 +29,7 @@ class ArmState:
         positions: of shapes (n,) and (2,) [rad, m].
         resting: for how long no joint has moved, by the driver's clock [s].
         stamped: whether the driver gave the stamp; otherwise it is the time of arrival.
+        rate: seconds of the driver's clock a second of this machine's.
     """
 
     stamp: float
@@ -35,6 +37,7 @@ class ArmState:
     positions: JointValues
     resting: float
     stamped: bool = True
+    rate: float = 1.0
 
 
 class ArmStates(Protocol):
@@ -75,6 +78,7 @@ class ArmStateBox:
         self._rest_positions: JointValues | None = None
         self._rest_since = 0.0
         self._shaking = Shaking()
+        self._rate = ClockRate()
         self._problem = ""
         self._closed = False
 
@@ -109,7 +113,9 @@ class ArmStateBox:
             if problem := self._shaking.problem(stamp, positions, resting):
                 self._problem = problem
                 return
-            self._newest = ArmState(stamp, self.now(), positions, resting, stamped)
+            now = self.now()
+            self._rate.hear(stamp, now)
+            self._newest = ArmState(stamp, now, positions, resting, stamped, self._rate.value)
             self._problem = ""
             self._changed.notify_all()
 

@@ -42,6 +42,7 @@ class Executive:
         condition: tells how the arm is.
         settings: asked for anew for each plan.
         conflict: why nothing may set out: somebody else does the same; empty: it may.
+        check: raises InvalidPlanError for a plan that is not for this arm.
     """
 
     def __init__(
@@ -52,8 +53,9 @@ class Executive:
         condition: Condition,
         settings: Callable[[], ExecutionSettings],
         conflict: Callable[[], str] = lambda: "",
+        check: Callable[[Plan], None] = lambda _plan: None,
     ) -> None:
-        self._planner, self._arm, self._settings = planner, arm, settings
+        self._planner, self._arm, self._settings, self._check = planner, arm, settings, check
         self._follower, self._condition, self._conflict = follower, condition, conflict
         self._publish: Callable[[MotionReport], None] = lambda _report: None
         self._report = MotionReport()
@@ -103,6 +105,7 @@ class Executive:
 
     def _plan_and_run(self, plan: Plan, stop: threading.Event) -> None:
         planner = self._wait_for_planner(stop.is_set)
+        self._check(plan)
         state = self._follower.wait_for_rest(stop.is_set)
         if state is not None and self._condition.held(state):
             self._empty_hand(planner)

@@ -16,6 +16,7 @@ from ..timing.trajectory import Interval, Trajectory
 from .arm_state import ArmState, ArmStates
 from .condition import Grip
 from .errors import ExecutionError
+from .in_step import InStep, first_moment
 from .monitor import Monitor, Verdict
 from .objections import objection
 from .patience import NOTICE_SECONDS, Patience
@@ -34,7 +35,9 @@ class Follower:
 
     Args:
         arm: where the arm's states arrive.
-        send: publishes a trajectory, which replaces the running one.
+        send: publishes a trajectory, which replaces the running one, and when it begins by the
+            clock of the arm's driver [s]; None: at once.
+        missing: which controller nobody can reach, in a sentence; empty: none.
 
     Attributes:
         settings: may be changed between trajectories.
@@ -54,9 +57,13 @@ class Follower:
     ON_THE_PATH = 0.05
 
     def __init__(
-        self, arm: ArmStates, send: Callable[[Trajectory], None], settings: ExecutionSettings
+        self,
+        arm: ArmStates,
+        send: Callable[[Trajectory, float | None], None],
+        settings: ExecutionSettings,
+        missing: Callable[[], str] = lambda: "",
     ) -> None:
-        self._arm, self._send = arm, send
+        self._arm, self._send, self._missing = arm, send, missing
         self.settings = settings
         self.on_waiting: Callable[[str], None] = lambda _sentence: None
         self.grip = Grip()
@@ -169,15 +176,23 @@ class Follower:
                 "the arm has moved while its motion was optimised; let it rest, and ask again",
                 recoverable=True,
             )
-        monitor = Monitor(trajectory, state, self.settings.monitor)
+        begins = in_step = None
+        watched, stepping = self.settings.monitor, self.settings.in_step
+        if stepping:
+            begins = first_moment(self._arm, state, patience, self._missing, self.settings)
+            in_step, state = InStep(trajectory, begins, stepping), self._arm.newest() or state
+            watched = replace(watched, max_lag=min(watched.max_lag, stepping.apart))
+        monitor = Monitor(trajectory, state, watched)
         begin, self._trajectory, self.time = self._arm.now(), trajectory, 0.0
         self.under_way, self.let_go_of = True, ""
-        self._send(trajectory)
+        self._send(trajectory, begins)
         told = False
         try:
             while True:
                 state = patience.wait(state)
                 verdict = monitor.update(state)
+                if in_step and verdict is Verdict.GOING:
+                    verdict = in_step.update(state)
                 if told is monitor.started and (told or self._arm.now() - begin > NOTICE_SECONDS):
                     told = not told
                     self.on_waiting("the arm has not set out yet" if told else "")
@@ -188,7 +203,7 @@ class Follower:
                     self.under_way = False
                     return True
                 if verdict is not Verdict.GOING:
-                    self._object(verdict, monitor, state)
+                    self._object(verdict, monitor, state, in_step)
                 # An arm that has not started may not have the trajectory yet, and rest before it.
                 if monitor.started and stopped():
                     return False
@@ -236,7 +251,7 @@ class Follower:
         self._trajectory = self._trajectory.brake(self.time, self.LEAD, self.settings.brake_seconds)
         self.under_way, self.time = False, 0.0
         self.grip = replace(self.grip, sent=float(np.mean(self._trajectory.positions.fingers[-1])))
-        self._send(self._trajectory)
+        self._send(self._trajectory, None)
         patience = self._patience()
         first = state = patience.wait(self._arm.newest())
         # Fingers that press on a block do not move when they are first sent back.
@@ -273,14 +288,19 @@ class Follower:
                 return False
         return True
 
-    def _object(self, verdict: Verdict, monitor: Monitor, state: ArmState) -> None:
-        if verdict is Verdict.NOT_OPENED and monitor.block is not None:
-            block = monitor.block
+    def _object(
+        self, verdict: Verdict, monitor: Monitor, state: ArmState, in_step: InStep | None
+    ) -> None:
+        block = monitor.block
+        if in_step and verdict is Verdict.FINGERS_TOO_NARROW:
+            block = in_step.block()
+        if verdict in (Verdict.NOT_OPENED, Verdict.FINGERS_TOO_NARROW) and block is not None:
             self.grip = replace(self.grip, held=block.object_name, move=block.move)
             self.let_go_of, self.moves_done = "", block.move
-        elif verdict in (Verdict.GRASP_LOST, Verdict.NOT_CLOSED):
+        elif verdict in (Verdict.GRASP_LOST, Verdict.NOT_CLOSED, Verdict.FINGERS_TOO_WIDE):
             self.grip = replace(self.grip, held="", move=-1)
-        error = objection(verdict, self.interval.phase, monitor.block, state)
+        expected = in_step.expected if in_step else None
+        error = objection(verdict, self.interval.phase, block, state, expected)
         if error.reason is MotionReason.TRACKING_LOST:
             self._hold(state)
         raise error
@@ -299,4 +319,4 @@ class Follower:
         stand = Trajectory(np.array([0.0, 0.5]), positions, still, (interval,))
         self._trajectory, self.under_way, self.time = stand, False, 0.0
         self.grip = replace(self.grip, sent=float(np.mean(positions.fingers[-1])))
-        self._send(stand)
+        self._send(stand, None)

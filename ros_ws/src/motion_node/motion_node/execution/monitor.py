@@ -19,6 +19,7 @@ from ..phases import PICK, PLACE, Phase
 from ..robots.joints import JointValues
 from ..timing.trajectory import Interval, Trajectory
 from .arm_state import ArmState
+from .lasting import Lasting
 
 Array = NDArray[np.float64]
 
@@ -37,6 +38,9 @@ class Verdict(Enum):
     NOT_CLOSED = auto()
     NOT_OPENED = auto()
     CLOCK_WENT_BACK = auto()
+    ARM_OUT_OF_STEP = auto()
+    FINGERS_TOO_WIDE = auto()
+    FINGERS_TOO_NARROW = auto()
 
 
 @dataclass(frozen=True)
@@ -65,27 +69,6 @@ class MonitorSettings:
     grasp_tolerance: float = 0.002
     grasp_seconds: float = 0.1
     finger_seconds: float = 0.3
-
-
-class _Lasting:
-    """Whether a condition has been true for some time [s]; silence counts as a moment."""
-
-    #: The most that passes from one joint state to the next [s].
-    LONGEST_STEP = 0.1
-
-    def __init__(self, seconds: float) -> None:
-        self._seconds = seconds
-        self._last: float | None = None
-        self._for = 0.0
-
-    def lasts(self, condition: bool, stamp: float) -> bool:
-        if not condition:
-            self._last, self._for = None, 0.0
-            return False
-        if self._last is not None:
-            self._for += min(max(0.0, stamp - self._last), self.LONGEST_STEP)
-        self._last = stamp
-        return self._for >= self._seconds - 1e-9
 
 
 @dataclass(frozen=True)
@@ -158,10 +141,10 @@ class Monitor:
         self._started = bool(
             arm.max() <= 2 * self.STARTED and fingers.max() < 2 * self.STARTED_FINGER
         )
-        self._off = _Lasting(settings.tracking_seconds)
-        self._empty = _Lasting(settings.grasp_seconds)
-        self._not_closed = _Lasting(settings.finger_seconds)
-        self._not_opened = _Lasting(settings.finger_seconds)
+        self._off = Lasting(settings.tracking_seconds)
+        self._empty = Lasting(settings.grasp_seconds)
+        self._not_closed = Lasting(settings.finger_seconds)
+        self._not_opened = Lasting(settings.finger_seconds)
         self._travels = _travels(trajectory)
         # Where each interval ends, and where the block that it is about stops closing fingers.
         self._ends = np.array([interval.end for interval in trajectory.intervals])

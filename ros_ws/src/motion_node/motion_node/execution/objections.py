@@ -18,7 +18,14 @@ _SENTENCES = {
     Verdict.BEHIND: "the arm falls behind its trajectory; something may hold it",
     Verdict.NOT_ARRIVED: "the arm does not reach the end of its trajectory",
     Verdict.CLOCK_WENT_BACK: "the joint states' time went back; was the simulator restarted?",
+    Verdict.ARM_OUT_OF_STEP: "the arm is not where it should be by now",
 }
+
+#: What may be with one controller of two; the name of its topic comes in between.
+_CONTROLLER = (
+    "the {} controller may not run, may have got {} late or never, may have refused it, or may "
+    "have another clock than joint_states"
+)
 
 _NO_STAMPS = (
     "; joint_states have no time stamps, so that the time of their arrival was taken, which is not "
@@ -27,16 +34,32 @@ _NO_STAMPS = (
 
 
 def objection(
-    verdict: Verdict, phase: Phase, block: Phase | None, state: ArmState
+    verdict: Verdict,
+    phase: Phase,
+    block: Phase | None,
+    state: ArmState,
+    expected: tuple[float, float] | None = None,
 ) -> ExecutionError:
     """Why an execution ends.
 
     Args:
         phase: what the arm was doing.
         block: the place phase of the block that the fingers hold, or have just let go.
+        expected: where the fingers of a gripper with a controller of its own may be, from and to
+            [m]; None: it has none.
     """
     apart = 2000 * float(np.mean(state.positions.fingers))
-    if verdict is Verdict.NOT_OPENED and block is not None:
+    doing = f"{phase.kind} of {phase.object_name}" if phase.object_name else "way home"
+    of_gripper, of_arm = (
+        f"; {_CONTROLLER.format(whose, topic)}" if expected else ""
+        for whose, topic in (("gripper's", "gripper_trajectory"), ("arm's", "joint_trajectory"))
+    )
+    if verdict in (Verdict.FINGERS_TOO_WIDE, Verdict.FINGERS_TOO_NARROW):
+        assert expected is not None
+        low, high = (2000 * opening for opening in expected)
+        due = f"{low:.0f} to {high:.0f} mm" if np.isfinite(high) else f"{low:.0f} mm or more"
+        sentence = f"the fingers stand {apart:.0f} mm apart where {due} are due by now ({doing})"
+    elif verdict is Verdict.NOT_OPENED and block is not None:
         sentence = (
             f"the fingers did not open: they stand {apart:.0f} mm apart and still hold "
             f"{block.object_name}; check the gripper"
@@ -53,9 +76,10 @@ def objection(
         )
     elif verdict is Verdict.GRASP_LOST:
         held = "what they held" if phase.tool.held == SOMETHING else phase.tool.held
-        sentence = f"the fingers closed on nothing or lost {held}"
+        sentence, of_gripper = f"the fingers closed on nothing or lost {held}", ""
     else:
-        doing = f"{phase.kind} of {phase.object_name}" if phase.object_name else "way home"
         sentence = f"{_SENTENCES[verdict]} ({doing}){'' if state.stamped else _NO_STAMPS}"
+        if verdict in (Verdict.NOT_STARTED, Verdict.BEHIND, Verdict.ARM_OUT_OF_STEP):
+            sentence += of_arm
         return ExecutionError(MotionReason.TRACKING_LOST, sentence, recoverable=True)
-    return ExecutionError(MotionReason.GRASP_LOST, sentence, recoverable=True)
+    return ExecutionError(MotionReason.GRASP_LOST, sentence + of_gripper, recoverable=True)

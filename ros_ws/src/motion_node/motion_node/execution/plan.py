@@ -15,12 +15,17 @@ from .recovery import WaysHome
 
 @dataclass(frozen=True)
 class Plan:
-    """A symbolic plan as the executive needs it."""
+    """A symbolic plan as the executive needs it.
+
+    Attributes:
+        frame: the frame of all its poses; empty: it does not say.
+    """
 
     plan_id: str
     graph: SceneGraph
     moves: tuple[Move, ...]
     object_names: tuple[str, ...]
+    frame: str = ""
 
 
 class Planner(WaysHome, Protocol):

@@ -7,13 +7,14 @@ from collections.abc import Mapping
 from typing import Final
 
 from .arm import Arm, BodySphere, Gripper
+from .kuka_iiwa import KUKA_IIWA
 from .panda import PANDA
 from .seeding import Seeding
 
-__all__ = ["ARMS", "PANDA", "Arm", "BodySphere", "Gripper", "Seeding", "arm_named"]
+__all__ = ["ARMS", "KUKA_IIWA", "PANDA", "Arm", "BodySphere", "Gripper", "Seeding", "arm_named"]
 
 #: Every known arm by the name that the parameter ``robot`` selects it with.
-ARMS: Final[Mapping[str, Arm]] = {arm.name: arm for arm in (PANDA,)}
+ARMS: Final[Mapping[str, Arm]] = {arm.name: arm for arm in (PANDA, KUKA_IIWA)}
 
 
 def arm_named(name: str) -> Arm:

@@ -131,6 +131,11 @@ class Kinematics:
         self.position_in_q = {name: index for index, name in enumerate(joints)}
 
     @property
+    def root(self) -> str:
+        """The link that is nobody's child; the world frame of all poses."""
+        return min(self.links - set(self.by_child), default="")
+
+    @property
     def lower(self) -> Array:
         """Lower position limits of q, shape (n,) [rad or m]."""
         return np.array([joint.lower for joint in self.joints])

@@ -8,7 +8,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from ..controller import ArmController
+from ..controller import CommandsMotors
 from ..world import World
 from .hand import touched_block
 from .request import DisturbanceError, Request, Vector
@@ -23,7 +23,7 @@ class Stage:
     """
 
     world: World
-    arm: ArmController
+    arm: CommandsMotors
     block: str = ""
 
 

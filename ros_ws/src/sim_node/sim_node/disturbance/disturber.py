@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final
 
-from ..controller import ArmController
+from ..controller import CommandsMotors
 from ..world import World
 from .disturbance import Disturbance, Stage, check_there
 from .events import EventWatch, describe_moment, watch_of
@@ -57,7 +57,7 @@ class Disturber:
     """
 
     def __init__(
-        self, world: World, arm: ArmController, tell: Callable[[str], None] = lambda _text: None
+        self, world: World, arm: CommandsMotors, tell: Callable[[str], None] = lambda _text: None
     ) -> None:
         self._stage = Stage(world, arm)
         self._tell = tell
