@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +24,21 @@ Array = NDArray[np.float64]
 NEAR_START = 0.15
 #: Starting points among obstacles keep so much more than the margin [m].
 SPARE = 0.01
+
+
+@dataclass(frozen=True)
+class Corner:
+    """Where a starting point turns.
+
+    Attributes:
+        share: of the way, at which it does.
+        point: of the tool centre, shape (3,) [m].
+        near: a configuration in which the hand is turned as there, shape (n,) [rad].
+    """
+
+    share: float
+    point: Array
+    near: Array
 
 
 class Way:
@@ -60,7 +77,7 @@ class Way:
         phase, clear = self._phase, self._clear
         x, y, z = switch.position_world
         columns = lowered(phase, switch, self._model.arm, clear)
-        above_own = phase.columns[switch.stack].top - self._tool_bottom(z) + clear.reserve + 0.002
+        above_own = phase.columns[switch.stack].top - self._tool_bottom(z) + clear.margin + 0.002
         lift = max(self._shape.lift, above_own)
         return VerticalEnd(np.array([x, y, switch.yaw]), z, lift, columns)
 
@@ -80,8 +97,8 @@ class Way:
         lift = max([self._shape.lift, *[top - bottom + reserve for top in near]])
         return VerticalEnd(np.array([x, y, yaw]), z, lift, phase.columns)
 
-    def guess(self, inverse: InverseKinematics, higher: float, inwards: float) -> Array:
-        """A starting point that goes up, across and down, shape (steps + 1, n) [rad].
+    def corners(self, higher: float, inwards: float) -> list[Corner]:
+        """Where a starting point turns that goes up, across and down.
 
         Args:
             higher: how much higher than needed to pass over the stacks [m].
@@ -96,22 +113,22 @@ class Way:
             (self.along.first, self.start_q, share),
             (self.along.last, self._goal_q, 1 - share),
         )
-        points, yaws, near, shares = [], [], [], [0.0]
+        found = []
         for end, q, when in ends:
-            if end is None:
-                continue
-            points.append(end.reference * (1 - inwards))
-            points[-1][2] = max(across, end.height + end.lift)
-            yaws.append(self._model.hand_at(q)[1])
-            near.append(q)
-            shares.append(when)
-        between: list[Array] = []
-        if near:
-            between = list(inverse.solve(np.array(points), np.array(yaws), np.array(near)))
-        knots = [self.start_q, *between, self._goal_q]
-        shares.append(1.0)
-        at = np.linspace(0.0, 1.0, shape.steps + 1)
-        return np.column_stack([np.interp(at, shares, column) for column in np.array(knots).T])
+            if end is not None:
+                point = end.reference * (1 - inwards)
+                point[2] = max(across, end.height + end.lift)
+                found.append(Corner(when, point, q))
+        return found
+
+    def through(self, shares: Sequence[float], between: Sequence[Array]) -> Array:
+        """A starting point, shape (steps + 1, n) [rad].
+
+        Args:
+            shares: of the way at which it is at the configurations ``between``, each (n,) [rad].
+        """
+        knots = np.array([self.start_q, *between, self._goal_q])
+        return _hats(self._shape.steps, (0.0, *shares, 1.0)) @ knots
 
     def guesses_round(
         self, inverse: InverseKinematics, obstacles: Sequence[Obstacle], count: int
@@ -125,7 +142,7 @@ class Way:
         for end, q in ((along.first, self.start_q), (along.last, self._goal_q)):
             point, yaw = self._model.hand_at(q)
             if end is not None:
-                point = np.array([*end.reference[:2], end.height + end.lift])
+                point = np.array([*end.reference[:2], end.height + end.lift + SPARE])
             ends.append(point)
             yaws.append(yaw)
         margin, floor = self._clear.margin + SPARE, self._clear.floor
@@ -148,6 +165,31 @@ class Way:
             knots = np.vstack([self.start_q, q, self._goal_q])
             when = np.concatenate([[-1e-9], at[first : last + 1], [shape.steps + 1e-9]])
             yield np.column_stack([np.interp(at, when, column) for column in knots.T])
+
+
+def guesses(
+    ways: Sequence[Way], inverse: InverseKinematics, higher: float, inwards: float
+) -> list[Array]:
+    """A starting point for each way, all of them found at once; see :meth:`Way.corners`."""
+    corners = [way.corners(higher, inwards) for way in ways]
+    listed = [corner for own in corners for corner in own]
+    if not listed:
+        return [way.through((), ()) for way in ways]
+    found = inverse.moved(
+        np.array([corner.near for corner in listed]), np.array([corner.point for corner in listed])
+    )
+    parts = np.split(found, np.cumsum([len(own) for own in corners])[:-1])
+    return [
+        way.through([corner.share for corner in own], list(part))
+        for way, own, part in zip(ways, corners, parts)
+    ]
+
+
+@lru_cache
+def _hats(steps: int, shares: tuple[float, ...]) -> Array:
+    """How much each of the configurations at shares of a way counts at its steps."""
+    at = np.linspace(0.0, 1.0, steps + 1)
+    return np.column_stack([np.interp(at, shares, row) for row in np.eye(len(shares))])
 
 
 def _half_turn(angle: float) -> float:
