@@ -16,7 +16,6 @@ from collections.abc import Sequence
 from typing import Final
 
 import casadi as ca
-import numpy as np
 
 #: Sharpness s of the smooth maximum [1/m].
 SHARPNESS: Final = 150.0

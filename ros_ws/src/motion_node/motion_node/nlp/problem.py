@@ -133,9 +133,7 @@ class KOrderProblem:
                 [column[index] for index in sorted({floor(step), ceil(step)})]
                 for step in item.steps
             ]
-            here = ca.horzcat(
-                *[sum(by_step[index] for index in own) / len(own) for own in columns]
-            )
+            here = ca.horzcat(*[sum(by_step[index] for index in own) / len(own) for own in columns])
             given = ca.reshape(parameters, rows.parameter_count, amount)
             maps.append((item, columns, here, given))
             values.append(ca.vec(rows.value.map(amount)(here, given)))
