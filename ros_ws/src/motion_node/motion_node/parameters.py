@@ -99,7 +99,7 @@ PARAMETERS = (
         "steps_per_phase",
         _PATH.steps,
         "Intervals into which the path of each pick or place is divided.",
-        6,
+        9,
         60,
         True,
     ),

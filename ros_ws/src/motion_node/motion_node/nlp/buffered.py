@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
@@ -21,13 +23,15 @@ class Buffered:
     """
 
     def __init__(self, function: ca.Function) -> None:
-        self._buffer, self._evaluate = function.buffer()
+        buffer: Any  # its stubs ask for sizes that it does not take
+        buffer, self._evaluate = function.buffer()
+        self._buffer = buffer  # it lives as long as its arrays are used
         self.arguments = [np.zeros(function.nnz_in(i)) for i in range(function.n_in())]
         self.results = [np.zeros(function.nnz_out(i)) for i in range(function.n_out())]
         for index, array in enumerate(self.arguments):
-            self._buffer.set_arg(index, memoryview(array))
+            buffer.set_arg(index, array.data)
         for index, array in enumerate(self.results):
-            self._buffer.set_res(index, memoryview(array))
+            buffer.set_res(index, array.data)
 
     def __call__(self, *arguments: Array) -> list[Array]:
         """The results for the first arguments; the others are as they were."""
