@@ -10,6 +10,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from ..blocks import Column
 from ..constraints import AlongPath, Clearances, VerticalEnd, lowered
 from ..obstacles import Obstacle
 from ..phases import Phase, Switch
@@ -22,6 +23,8 @@ Array = NDArray[np.float64]
 
 #: Stacks nearer than this to the start have to be risen above first [m].
 NEAR_START = 0.15
+#: Stacks farther than this from the line between the ends are passed beside [m].
+BESIDE = 0.14
 #: Starting points among obstacles keep so much more than the margin [m].
 SPARE = 0.01
 
@@ -97,6 +100,16 @@ class Way:
         lift = max([self._shape.lift, *[top - bottom + reserve for top in near]])
         return VerticalEnd(np.array([x, y, yaw]), z, lift, phase.columns)
 
+    def _passed(self, column: Column) -> bool:
+        """Whether a stack stands near the straight line between the ends, seen from above."""
+        first, last = self.along.first, self.along.last
+        if first is None or last is None:
+            return True
+        begin, way = first.reference[:2], last.reference[:2] - first.reference[:2]
+        away = np.array(column.center) - begin
+        share = float(np.clip(away @ way / max(way @ way, 1e-9), 0.0, 1.0))
+        return float(np.hypot(*(away - share * way))) < BESIDE
+
     def corners(self, higher: float, inwards: float) -> list[Corner]:
         """Where a starting point turns that goes up, across and down.
 
@@ -106,9 +119,9 @@ class Way:
         """
         shape, phase = self._shape, self._phase
         hanging = phase.tool.bottom - self._model.arm.gripper.tcp_offset
-        top = max(column.top for column in phase.columns)
+        top = max([column.top for column in phase.columns if self._passed(column)], default=0.0)
         across = top + hanging + self._clear.reserve + 0.01 + higher
-        share = 1.3 * shape.vertical / shape.steps
+        share = 1.6 * shape.vertical / shape.steps
         ends = (
             (self.along.first, self.start_q, share),
             (self.along.last, self._goal_q, 1 - share),
@@ -187,8 +200,12 @@ def guesses(
 
 @lru_cache
 def _hats(steps: int, shares: tuple[float, ...]) -> Array:
-    """How much each of the configurations at shares of a way counts at its steps."""
-    at = np.linspace(0.0, 1.0, steps + 1)
+    """How much each of the configurations at shares of a way counts at its steps.
+
+    The way begins and ends slowly.
+    """
+    time = np.linspace(0.0, 1.0, steps + 1)
+    at = time**2 * (3.0 - 2.0 * time)
     return np.column_stack([np.interp(at, shares, row) for row in np.eye(len(shares))])
 
 
