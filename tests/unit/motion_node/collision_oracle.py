@@ -25,6 +25,11 @@ from scene_graph import Move, SceneGraph, apply_move
 Array = NDArray[np.float64]
 
 FAR = 0.2
+FINGERS = ("panda_leftfinger", "panda_rightfinger")
+#: Fingers are beside a block if the point between them is so near to its middle, from above and in
+#: height [m]; then they keep this distance to it [m].
+BETWEEN = (0.015, 0.06)
+BESIDE = 0.002
 
 
 @dataclass(frozen=True)
@@ -164,7 +169,11 @@ class CollisionOracle:
     def nearest(self, time: float) -> tuple[Nearest, Nearest]:
         """The two things that are nearest, and the held block and another block or the table.
 
-        What is held touches the fingers; the arm's base stands on the table.
+        What is held touches the fingers; the arm's base stands on the table. Fingers that go
+        around a block have to come near to it.
+
+        Raises:
+            AssertionError: if they touch it.
         """
         held = self.held[0] if self.held else ""
         robot = carried = Nearest(FAR, "", time)
@@ -196,10 +205,18 @@ class CollisionOracle:
                 found = Nearest(point[8], what, found.time)
         return found
 
+    def _between_fingers(self, name: str) -> bool:
+        x, y, z = np.subtract(self.hand_pose()[0], self.block_position(name))
+        return bool(np.hypot(x, y) < BETWEEN[0] and abs(z) < BETWEEN[1])
+
     def _robot_to(self, body: int, name: str, found: Nearest) -> Nearest:
+        between = name in self.blocks and self._between_fingers(name)
         for point in pybullet.getClosestPoints(self.robot, body, FAR, physicsClientId=self.client):
             link = self.link_names.get(point[3], "panda_link0")
             if name == "table" and link in ("panda_link0", "panda_link1"):
+                continue
+            if between and link in FINGERS:
+                assert point[8] > BESIDE, f"{link} touches {name} at {found.time:.2f} s"
                 continue
             if point[8] < found.distance:
                 found = Nearest(point[8], f"{link} to {name}", found.time)

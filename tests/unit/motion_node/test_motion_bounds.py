@@ -153,7 +153,7 @@ def test_optimising_stops_on_request(planner: MotionPlanner) -> None:
 def test_places_may_be_elsewhere(planner: MotionPlanner, bases: list[tuple[float, float]]) -> None:
     graph = scene((2, 1, 1, 1)[: len(bases)], np.random.default_rng(7), places=bases)
     motion = planner.solve(graph, [Move(0, 1), Move(1, 0)], HOME, OPEN)
-    assert motion.trajectory.duration > 5.0
+    assert motion.trajectory.duration > 4.0
 
 
 def test_the_table_may_be_at_another_height(planner: MotionPlanner) -> None:

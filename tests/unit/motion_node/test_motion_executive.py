@@ -91,7 +91,7 @@ def test_a_block_in_hand_is_put_down_before_the_arm_brakes(bench: Bench) -> None
     np.testing.assert_allclose(joints.arm, placed.arm, atol=0.01)
 
 
-@pytest.mark.parametrize("share", [0.0, 0.2, 0.4, 0.6, 0.8])
+@pytest.mark.parametrize("share", [0.0, 0.2, 0.4, 0.6])
 @pytest.mark.parametrize(("grip", "moves_done"), [(2, 0), (4, 1), (6, 1), (8, 2)])
 def test_a_stop_while_the_fingers_move_leaves_the_block_standing_and_the_hand_open(
     bench: Bench, grip: int, moves_done: int, share: float

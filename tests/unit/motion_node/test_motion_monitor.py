@@ -262,7 +262,7 @@ def test_fault_4_fingers_that_do_not_close_are_noticed(trajectory: Trajectory) -
         trajectory, lambda t: JointValues(trajectory.sample(t)[0].arm, HOME.fingers)
     )
     assert verdict is Verdict.NOT_CLOSED
-    assert time < carrying(trajectory)
+    assert time < trajectory.interval_at(carrying(trajectory)).end
     assert monitor.block is not None
     assert monitor.block.object_name == "green_box"
 

@@ -99,12 +99,13 @@ class Scene:
 def _column(stack: Sequence[Block], place: Place, floor: float) -> Column:
     if not stack:
         return Column(place.position_world[:2], (0.0, 0.0), floor)
-    lower = np.min([np.subtract(b.position_world[:2], b.half_world) for b in stack], axis=0)
-    upper = np.max([np.add(b.position_world[:2], b.half_world) for b in stack], axis=0)
-    center, half = (lower + upper) / 2, (upper - lower) / 2
+    boxes = [(block.position_world, block.half_world) for block in stack]
+    (left, right), (near, far) = (
+        (min(p[i] - h[i] for p, h in boxes), max(p[i] + h[i] for p, h in boxes)) for i in (0, 1)
+    )
     return Column(
-        (float(center[0]), float(center[1])),
-        (float(half[0]), float(half[1])),
+        ((left + right) / 2, (near + far) / 2),
+        ((right - left) / 2, (far - near) / 2),
         max(block.top for block in stack),
     )
 

@@ -278,10 +278,11 @@ class MotionPlanner:
         switching = [phase for phase in phases if phase.kind != HOME]
         configurations = [arm, *keyframes.solve(arm, switching, clear), self.model.home]
         ends = list(pairwise(configurations))
+        guesses = problem.guesses(phases, configurations, clear)
 
         def solve_one(index: int, kept: Clearances) -> PhasePath:
             check()
-            return problem.solve([phases[index]], ends[index], kept)[0]
+            return problem.solve([phases[index]], ends[index], kept, [guesses[index]])[0]
 
         def timed(paths: Sequence[PhasePath]) -> Trajectory:
             first = self.arm.gripper.finger_travel if opening else None

@@ -36,9 +36,9 @@ class PathSettings:
         max_lean: how far the hand may lean from vertical in between [rad].
     """
 
-    steps: int = 14
-    vertical: int = 4
-    lift: float = 0.05
+    steps: int = 9
+    vertical: int = 2
+    lift: float = 0.02
     margin: float = 0.015
     max_lean: float = 0.15
 

@@ -104,17 +104,17 @@ class Group:
 
 
 def grouped(
-    steps: Sequence[tuple[int, ...]],
+    steps: Sequence[tuple[float, ...]],
     constraints: Sequence[Constraint],
     model: ArmModel,
     stacks: int,
-) -> list[tuple[tuple[int, ...], Group]]:
+) -> list[tuple[tuple[float, ...], Group]]:
     """Constraints by the steps at which they act, those without steps left out.
 
     Args:
         steps: of each constraint.
     """
-    members: dict[tuple[int, ...], list[Constraint]] = {}
+    members: dict[tuple[float, ...], list[Constraint]] = {}
     for own, constraint in zip(steps, constraints):
         if own:
             members.setdefault(own, []).append(constraint)

@@ -27,7 +27,7 @@ from ..robots.inverse_kinematics import InverseKinematics
 from ..robots.model import ArmModel
 from ..settings import PathSettings
 from .groups import grouped
-from .way import Way
+from .way import Way, guesses
 
 Array = NDArray[np.float64]
 
@@ -78,7 +78,7 @@ class PathProblem:
             fixed=[k * intervals for k in range(phases + 1)],
             costs=[
                 DifferenceCost(_accelerations(phases, intervals), weights),
-                DifferenceCost(velocities, np.full(model.dimension, 0.01 * intervals)),
+                DifferenceCost(velocities, np.full(model.dimension, 3.0 * intervals)),
             ],
             attached=[
                 Attached(group.rows, tuple(k * intervals + s for k in range(phases) for s in own))
@@ -87,23 +87,40 @@ class PathProblem:
             solver=solver,
         )
 
-    def solve(
+    def guesses(
         self, phases: Sequence[Phase], configurations: Sequence[Array], clear: Clearances
+    ) -> list[Array]:
+        """The first starting point of each of any number of phases, as for :meth:`solve`."""
+        ways = self._ways(phases, configurations, clear)
+        return guesses(ways, self._inverse, *_TRIES[0])
+
+    def _ways(
+        self, phases: Sequence[Phase], configurations: Sequence[Array], clear: Clearances
+    ) -> list[Way]:
+        return [
+            Way(self._model, self._settings, phase, start, goal, clear)
+            for phase, start, goal in zip(phases, configurations, configurations[1:])
+        ]
+
+    def solve(
+        self,
+        phases: Sequence[Phase],
+        configurations: Sequence[Array],
+        clear: Clearances,
+        first: Sequence[Array] = (),
     ) -> list[PhasePath]:
         """P3 for consecutive phases between given configurations at rest.
 
         Args:
             phases: as many as the problem was built for.
             configurations: at their ends, one more than phases, each of shape (n,) [rad].
+            first: what ``guesses`` found, if it was asked.
 
         Raises:
             InfeasibleError: with bound ``path``, naming the constraint that is violated most.
         """
         model, settings = self._model, self._settings
-        ways = [
-            Way(model, settings, phase, start, goal, clear)
-            for phase, start, goal in zip(phases, configurations, configurations[1:])
-        ]
+        ways = self._ways(phases, configurations, clear)
         demands = [
             Demand.after_one_another([group.along_path(way.along, way.start_q) for way in ways])
             for _, group in self._groups
@@ -112,7 +129,7 @@ class PathProblem:
         lower = np.minimum(model.lower, configurations[0])
         upper = np.maximum(model.upper, configurations[0])
         attempts: list[Solution] = []
-        for x, thorough in self._starts(ways, demands):
+        for x, thorough in self._starts(ways, demands, first):
             solution = self._problem.solve(x, demands, lower, upper, thorough)
             if solution.feasible:
                 ends = range(0, len(x), settings.steps)
@@ -124,31 +141,33 @@ class PathProblem:
         raise self._error(phases, min(attempts, key=lambda item: item.violation))
 
     def _starts(
-        self, ways: Sequence[Way], demands: Sequence[Demand]
+        self, ways: Sequence[Way], demands: Sequence[Demand], first: Sequence[Array]
     ) -> Iterator[tuple[Array, bool]]:
         """Starting points in the order in which they are tried, and how thoroughly."""
+        straight = _joined(first or guesses(ways, self._inverse, *_TRIES[0]))
         if not self.obstacles:
-            for higher, inwards in _TRIES:
-                yield _joined([way.guess(self._inverse, higher, inwards) for way in ways]), True
+            yield straight, True
+            for attempt in _TRIES[1:]:
+                yield _joined(guesses(ways, self._inverse, *attempt)), True
             return
-        straight = _joined([way.guess(self._inverse, 0.0, 0.0) for way in ways])
         hopeful = self._missed(straight, demands) < _HOPEFUL
         if hopeful:
             yield straight, False
         around = [way.guesses_round(self._inverse, self.obstacles, _ROUND) for way in ways]
-        for guesses in zip(*around):
-            yield _joined(guesses), False
+        for found in zip(*around):
+            yield _joined(found), False
         if not hopeful:
             yield straight, False
-        for higher, inwards in _TRIES[1:]:
-            yield _joined([way.guess(self._inverse, higher, inwards) for way in ways]), False
+        for attempt in _TRIES[1:]:
+            yield _joined(guesses(ways, self._inverse, *attempt)), False
 
     def _missed(self, x: Array, demands: Sequence[Demand]) -> float:
         """By how much a starting point misses what is asked most [m or rad]."""
         found = []
         for (steps, group), demand in zip(self._groups, demands):
             at = [k + s for k in range(0, len(x) - 1, self._settings.steps) for s in steps]
-            values = np.array(group.rows.value(x[at].T, demand.parameters.T)).T
+            q = (x[np.floor(at).astype(int)] + x[np.ceil(at).astype(int)]) / 2
+            values = np.array(group.rows.value(q.T, demand.parameters.T)).T
             found.append(float(demand.excess(values).max(initial=0.0)))
         return max(found, default=0.0)
 
@@ -161,9 +180,9 @@ class PathProblem:
         return worst.error(PATH, phases[worst.step // steps_a_phase])
 
 
-def _joined(guesses: Sequence[Array]) -> Array:
+def _joined(parts: Sequence[Array]) -> Array:
     """The starting points of phases as one."""
-    return np.vstack([guesses[0], *[guess[1:] for guess in guesses[1:]]])
+    return np.vstack([parts[0], *[part[1:] for part in parts[1:]]])
 
 
 def _accelerations(phases: int, intervals: int) -> Array:

@@ -66,7 +66,7 @@ class Poses:
             InfeasibleError: with bound ``pose``.
         """
         return [
-            self._solve_one(phase, [demand.at(index) for demand in demands], own)
+            self._solve_one(phase, [demand.at([index]) for demand in demands], own)
             for index, (phase, own) in enumerate(zip(phases, self._guesses(phases, demands)))
         ]
 
@@ -89,7 +89,7 @@ class Poses:
 
         The arm may have a joint more than a pose asks for. Beside a tall stack the forearm has to
         lean away from it, which is another valley than the upright one; so the elbow is swung to
-        either side in steps, unless upright configurations serve for all switches.
+        either side in steps, where an upright configuration does not serve.
         """
         model, inverse = self._problems.model, self._inverse
         switches = [phase.switch for phase in phases if phase.switch]
@@ -109,14 +109,17 @@ class Poses:
             return np.round(self._problems.excess(configurations, demands) + 10 * missed, 3)
 
         found = [[Guess(q, float(s))] for q, s in zip(upright, score(upright))]
-        if all(own[0].score == 0.0 for own in found):
+        left = [index for index, own in enumerate(found) if own[0].score > 0.0]
+        if not left:
             return found
+        positions, directions, upright = positions[left], directions[left], upright[left]
+        demands = [demand.at(left) for demand in demands]
         seeding = model.arm.seeding
         for side in (1.0, -1.0):
             q = upright
             for step in range(seeding.swings):
                 swung = q + side * seeding.swing_step * inverse.self_motion(q)
                 q = inverse.solve(positions, directions, swung, iterations=8)
-                for own, configuration, value in zip(found, q, score(q)):
-                    own.append(Guess(configuration, float(value), step + 1))
+                for index, configuration, value in zip(left, q, score(q)):
+                    found[index].append(Guess(configuration, float(value), step + 1))
         return [sorted(own, key=lambda guess: (guess.score, guess.swing)) for own in found]

@@ -42,7 +42,7 @@ class PosesAmongObstacles(Poses):
         demands = self._problems.demands(phases, clear)
         found = []
         for index, (phase, own) in enumerate(zip(phases, self._guesses(phases, demands))):
-            here = [demand.at(index) for demand in demands]
+            here = [demand.at([index]) for demand in demands]
             q = self._try(own, here)
             if q is None:
                 raise self._verdict(phase, own, here, clear)

@@ -4,10 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..blocks import Column
 from ..constraints import AlongPath, Clearances, VerticalEnd, lowered
 from ..obstacles import Obstacle
 from ..phases import Phase, Switch
@@ -20,8 +23,25 @@ Array = NDArray[np.float64]
 
 #: Stacks nearer than this to the start have to be risen above first [m].
 NEAR_START = 0.15
+#: Stacks farther than this from the line between the ends are passed beside [m].
+BESIDE = 0.14
 #: Starting points among obstacles keep so much more than the margin [m].
 SPARE = 0.01
+
+
+@dataclass(frozen=True)
+class Corner:
+    """Where a starting point turns.
+
+    Attributes:
+        share: of the way, at which it does.
+        point: of the tool centre, shape (3,) [m].
+        near: a configuration in which the hand is turned as there, shape (n,) [rad].
+    """
+
+    share: float
+    point: Array
+    near: Array
 
 
 class Way:
@@ -60,7 +80,7 @@ class Way:
         phase, clear = self._phase, self._clear
         x, y, z = switch.position_world
         columns = lowered(phase, switch, self._model.arm, clear)
-        above_own = phase.columns[switch.stack].top - self._tool_bottom(z) + clear.reserve + 0.002
+        above_own = phase.columns[switch.stack].top - self._tool_bottom(z) + clear.margin + 0.002
         lift = max(self._shape.lift, above_own)
         return VerticalEnd(np.array([x, y, switch.yaw]), z, lift, columns)
 
@@ -80,8 +100,18 @@ class Way:
         lift = max([self._shape.lift, *[top - bottom + reserve for top in near]])
         return VerticalEnd(np.array([x, y, yaw]), z, lift, phase.columns)
 
-    def guess(self, inverse: InverseKinematics, higher: float, inwards: float) -> Array:
-        """A starting point that goes up, across and down, shape (steps + 1, n) [rad].
+    def _passed(self, column: Column) -> bool:
+        """Whether a stack stands near the straight line between the ends, seen from above."""
+        first, last = self.along.first, self.along.last
+        if first is None or last is None:
+            return True
+        begin, way = first.reference[:2], last.reference[:2] - first.reference[:2]
+        away = np.array(column.center) - begin
+        share = float(np.clip(away @ way / max(way @ way, 1e-9), 0.0, 1.0))
+        return float(np.hypot(*(away - share * way))) < BESIDE
+
+    def corners(self, higher: float, inwards: float) -> list[Corner]:
+        """Where a starting point turns that goes up, across and down.
 
         Args:
             higher: how much higher than needed to pass over the stacks [m].
@@ -89,29 +119,29 @@ class Way:
         """
         shape, phase = self._shape, self._phase
         hanging = phase.tool.bottom - self._model.arm.gripper.tcp_offset
-        top = max(column.top for column in phase.columns)
+        top = max([column.top for column in phase.columns if self._passed(column)], default=0.0)
         across = top + hanging + self._clear.reserve + 0.01 + higher
-        share = 1.3 * shape.vertical / shape.steps
+        share = 1.6 * shape.vertical / shape.steps
         ends = (
             (self.along.first, self.start_q, share),
             (self.along.last, self._goal_q, 1 - share),
         )
-        points, yaws, near, shares = [], [], [], [0.0]
+        found = []
         for end, q, when in ends:
-            if end is None:
-                continue
-            points.append(end.reference * (1 - inwards))
-            points[-1][2] = max(across, end.height + end.lift)
-            yaws.append(self._model.hand_at(q)[1])
-            near.append(q)
-            shares.append(when)
-        between: list[Array] = []
-        if near:
-            between = list(inverse.solve(np.array(points), np.array(yaws), np.array(near)))
-        knots = [self.start_q, *between, self._goal_q]
-        shares.append(1.0)
-        at = np.linspace(0.0, 1.0, shape.steps + 1)
-        return np.column_stack([np.interp(at, shares, column) for column in np.array(knots).T])
+            if end is not None:
+                point = end.reference * (1 - inwards)
+                point[2] = max(across, end.height + end.lift)
+                found.append(Corner(when, point, q))
+        return found
+
+    def through(self, shares: Sequence[float], between: Sequence[Array]) -> Array:
+        """A starting point, shape (steps + 1, n) [rad].
+
+        Args:
+            shares: of the way at which it is at the configurations ``between``, each (n,) [rad].
+        """
+        knots = np.array([self.start_q, *between, self._goal_q])
+        return _hats(self._shape.steps, (0.0, *shares, 1.0)) @ knots
 
     def guesses_round(
         self, inverse: InverseKinematics, obstacles: Sequence[Obstacle], count: int
@@ -125,7 +155,7 @@ class Way:
         for end, q in ((along.first, self.start_q), (along.last, self._goal_q)):
             point, yaw = self._model.hand_at(q)
             if end is not None:
-                point = np.array([*end.reference[:2], end.height + end.lift])
+                point = np.array([*end.reference[:2], end.height + end.lift + SPARE])
             ends.append(point)
             yaws.append(yaw)
         margin, floor = self._clear.margin + SPARE, self._clear.floor
@@ -148,6 +178,35 @@ class Way:
             knots = np.vstack([self.start_q, q, self._goal_q])
             when = np.concatenate([[-1e-9], at[first : last + 1], [shape.steps + 1e-9]])
             yield np.column_stack([np.interp(at, when, column) for column in knots.T])
+
+
+def guesses(
+    ways: Sequence[Way], inverse: InverseKinematics, higher: float, inwards: float
+) -> list[Array]:
+    """A starting point for each way, all of them found at once; see :meth:`Way.corners`."""
+    corners = [way.corners(higher, inwards) for way in ways]
+    listed = [corner for own in corners for corner in own]
+    if not listed:
+        return [way.through((), ()) for way in ways]
+    found = inverse.moved(
+        np.array([corner.near for corner in listed]), np.array([corner.point for corner in listed])
+    )
+    parts = np.split(found, np.cumsum([len(own) for own in corners])[:-1])
+    return [
+        way.through([corner.share for corner in own], list(part))
+        for way, own, part in zip(ways, corners, parts)
+    ]
+
+
+@lru_cache
+def _hats(steps: int, shares: tuple[float, ...]) -> Array:
+    """How much each of the configurations at shares of a way counts at its steps.
+
+    The way begins and ends slowly.
+    """
+    time = np.linspace(0.0, 1.0, steps + 1)
+    at = time**2 * (3.0 - 2.0 * time)
+    return np.column_stack([np.interp(at, shares, row) for row in np.eye(len(shares))])
 
 
 def _half_turn(angle: float) -> float:

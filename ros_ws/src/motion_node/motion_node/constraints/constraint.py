@@ -65,8 +65,11 @@ class Constraint(ABC):
         """What is asked at each of ``path_steps``; infinite bounds where nothing is."""
         raise NotImplementedError(f"{self.name} acts along paths, but asks nothing of them")
 
-    def path_steps(self, shape: PathSettings) -> tuple[int, ...]:
-        """Steps of a phase at which it acts in P3, of 1 to ``shape.steps`` - 1; all of them."""
+    def path_steps(self, shape: PathSettings) -> tuple[float, ...]:
+        """Steps of a phase at which it acts in P3, of 1 to ``shape.steps`` - 1; all of them.
+
+        Half a step is half way between two of them.
+        """
         return tuple(range(1, shape.steps))
 
     def relaxed(self, demand: Demand, at_start: Array, way: AlongPath) -> Demand:

@@ -14,8 +14,16 @@ from ..nlp import Demand
 from ..phases import Phase
 from ..robots import Arm
 from ..robots.model import ArmModel
+from ..settings import PathSettings
 from .constraint import Constraint
-from .hulls import COLUMN_SIZE, HAND_SIZE, HandBox, hand_parameters, split_columns
+from .hulls import (
+    COLUMN_SIZE,
+    HAND_SIZE,
+    HandBox,
+    column_parameters,
+    hand_parameters,
+    split_columns,
+)
 from .situation import AlongPath, AtSwitch
 
 
@@ -26,6 +34,9 @@ def hand_in_words(phase: Phase) -> str:
 
 class HandClearance(Constraint):
     """Rows: gap to each stack less the margin [m].
+
+    Between the vertical ends the hand is quick, and may be on one side of a stack at one step and
+    on the other side at the next; so half steps count there, too.
 
     Parameters: columns, the hand's box, height of the table, margin.
     """
@@ -57,11 +68,18 @@ class HandClearance(Constraint):
         lower = np.zeros((1, len(moment.columns)))
         return Demand(parameters[None], lower, np.full_like(lower, np.inf))
 
+    def path_steps(self, shape: PathSettings) -> tuple[float, ...]:
+        """All, then half steps."""
+        between = range(shape.vertical, shape.steps - shape.vertical)
+        return (*super().path_steps(shape), *(step + 0.5 for step in between))
+
     def along_path(self, way: AlongPath) -> Demand:
         """Apart at each step."""
-        others = np.repeat([self._others(way)], way.steps, axis=0)
-        lower = np.zeros((way.steps, len(way.phase.columns)))
-        parameters = np.concatenate([way.column_parameters, others], axis=1)
+        whole = np.repeat([column_parameters(way.phase.columns)], way.between, axis=0)
+        columns = np.concatenate([way.column_parameters, whole])
+        others = np.repeat([self._others(way)], len(columns), axis=0)
+        lower = np.zeros((len(columns), len(way.phase.columns)))
+        parameters = np.concatenate([columns, others], axis=1)
         return Demand(parameters, lower, np.full_like(lower, np.inf))
 
     def _others(self, where: AtSwitch | AlongPath) -> list[float]:

@@ -119,6 +119,11 @@ class AlongPath:
         """Number of the steps: all but the first and the last configuration."""
         return self.shape.steps - 1
 
+    @property
+    def between(self) -> int:
+        """Number of the half steps that lie between those of the vertical ends."""
+        return self.shape.steps - 2 * self.shape.vertical
+
     @cached_property
     def vertical(self) -> list[tuple[VerticalEnd, slice]]:
         """The vertical ends and their steps, counted from 0."""

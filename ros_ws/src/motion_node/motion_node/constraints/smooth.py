@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Smooth stand-ins for largest, smallest and absolute values, on the safe side.
 
-The largest of k gaps d_i is smoothed from below by
+The largest of k gaps d_i is smoothed from below by their mean with weights exp(s d_i),
 
-    (1/s) log(sum_i exp(s d_i)) - log(k)/s  <=  max_i d_i,
+    sum_i d_i exp(s d_i) / sum_i exp(s d_i)  <=  max_i d_i,
 
-whose gradient never vanishes, so a solver finds the way out of any overlap. The smallest is
-smoothed from below likewise.
+which is the largest itself where that stands out, or where all are the same, and whose gradient
+does not vanish, so a solver finds the way out of any overlap. The smallest is smoothed from below
+by (-1/s) log(sum_i exp(-s d_i)).
 """
 
 from __future__ import annotations
@@ -15,14 +16,13 @@ from collections.abc import Sequence
 from typing import Final
 
 import casadi as ca
-import numpy as np
 
 #: Sharpness s of the smooth maximum [1/m].
 SHARPNESS: Final = 150.0
 #: Of the smooth minimum over the spheres of a body [1/m].
 SHARPNESS_OF_BODIES: Final = 400.0
-#: What the safe side costs at most, where one of four gaps dominates: log(4)/s [m].
-SMOOTHING: Final = float(np.log(4.0)) / SHARPNESS
+#: What the safe side costs at most, of four gaps: W(3/e)/s, W being Lambert's function [m].
+SMOOTHING: Final = 0.6035 / SHARPNESS
 
 
 def smooth_abs(value: ca.SX) -> ca.SX:
@@ -32,7 +32,9 @@ def smooth_abs(value: ca.SX) -> ca.SX:
 
 def smooth_max(values: Sequence[ca.SX]) -> ca.SX:
     """From below; see the module."""
-    return (ca.logsumexp(SHARPNESS * ca.vertcat(*values)) - np.log(len(values))) / SHARPNESS
+    gaps = ca.vertcat(*values)
+    weights = ca.exp(SHARPNESS * (gaps - ca.mmax(gaps)))
+    return ca.dot(gaps, weights) / ca.sum1(weights)
 
 
 def smooth_min(values: Sequence[ca.SX]) -> ca.SX:

@@ -65,6 +65,6 @@ class SwitchPose(Constraint):
         exact = (0.0, 0.0, 0.0, z)
         return Demand.constant(1, exact, exact, (x, y, switch.yaw))
 
-    def path_steps(self, shape: PathSettings) -> tuple[int, ...]:
+    def path_steps(self, shape: PathSettings) -> tuple[float, ...]:
         """None: P2 has fixed the switches by then."""
         return ()

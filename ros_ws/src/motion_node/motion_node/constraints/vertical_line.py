@@ -42,7 +42,7 @@ class VerticalLine(Constraint):
         """See :class:`Constraint`."""
         return ("vertical line", "vertical line", "direction of the fingers", "lift")
 
-    def path_steps(self, shape: PathSettings) -> tuple[int, ...]:
+    def path_steps(self, shape: PathSettings) -> tuple[float, ...]:
         """The first and the last few."""
         last = shape.steps
         return (*range(1, shape.vertical + 1), *range(last - shape.vertical, last))

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import ceil, floor
 
 import casadi as ca
 import numpy as np
@@ -42,10 +43,10 @@ class DifferenceCost:
 
 @dataclass(frozen=True)
 class Attached:
-    """Rows and the steps at which they are evaluated."""
+    """Rows and the steps at which they are evaluated; half a step is the mean of two free ones."""
 
     rows: Rows
-    steps: tuple[int, ...]
+    steps: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -125,19 +126,23 @@ class KOrderProblem:
         linear, *flat = ca.vertsplit(p, np.cumsum([0, count * n, *sizes]).tolist())
         by_step = ca.horzsplit(ca.reshape(z, n, count), 1)
         values, jacobians = [ca.MX(0, 1)], [ca.MX(0, count * n)]
-        maps: list[tuple[Attached, list[int], ca.MX, ca.MX]] = []
+        maps: list[tuple[Attached, list[list[int]], ca.MX, ca.MX]] = []
         for item, parameters in zip(self.attached, flat):
             rows, amount = item.rows, len(item.steps)
-            columns = [column[step] for step in item.steps]
-            here = ca.horzcat(*[by_step[index] for index in columns])
+            columns = [
+                [column[index] for index in sorted({floor(step), ceil(step)})]
+                for step in item.steps
+            ]
+            here = ca.horzcat(*[sum(by_step[index] for index in own) / len(own) for own in columns])
             given = ca.reshape(parameters, rows.parameter_count, amount)
             maps.append((item, columns, here, given))
             values.append(ca.vec(rows.value.map(amount)(here, given)))
             slopes = ca.horzsplit(rows.jacobian.map(amount)(here, given), n)
-            for index, slope in zip(columns, slopes):
-                left = ca.MX(rows.count, index * n)
-                right = ca.MX(rows.count, (count - index - 1) * n)
-                jacobians.append(ca.horzcat(left, slope, right))
+            for own, slope in zip(columns, slopes):
+                left = ca.MX(rows.count, own[0] * n)
+                right = ca.MX(rows.count, (count - own[-1] - 1) * n)
+                shares = [slope / len(own)] * len(own)
+                jacobians.append(ca.horzcat(left, *shares, right))
         g: ca.MX = ca.vertcat(*values)
         hessian = ca.sparsify(ca.DM(self._hessian))
         cost = ca.mtimes(z.T, ca.mtimes(hessian, z)) / 2 + ca.dot(linear, z)
@@ -146,17 +151,22 @@ class KOrderProblem:
             factor = ca.MX.sym("factor")
             lam_g = ca.MX.sym("lam_g", sum(amounts))
             multipliers = ca.vertsplit(lam_g, np.cumsum([0, *amounts]).tolist())
-            blocks = [ca.MX(n, n) for _ in range(count)]
+            total = factor * hessian
             for (item, columns, here, given), lam in zip(maps, multipliers):
                 amount = len(item.steps)
                 weights = ca.reshape(lam, item.rows.count, amount)
                 curvature = item.rows.curvature.map(amount)(here, given, weights)
-                for index, block in zip(columns, ca.horzsplit(curvature, n)):
-                    blocks[index] = blocks[index] + block
+                # (d here / d z)' diag(curvature) (d here / d z)
+                mean = np.zeros((amount, count))
+                for row, own in enumerate(columns):
+                    mean[row, own] = 1.0 / len(own)
+                spread = ca.sparsify(ca.DM(np.kron(mean, np.eye(n))))
+                blocks = ca.diagcat(*ca.horzsplit(curvature, n))
+                total += ca.mtimes(spread.T, ca.mtimes(blocks, spread))
             return ca.Function(
                 "nlp_hess_l",
                 [z, p, factor, lam_g],
-                [ca.triu(factor * hessian + ca.diagcat(*blocks))],
+                [ca.triu(total)],
                 ["x", "p", "lam_f", "lam_g"],
                 ["triu_hess_gamma_x_x"],
             )

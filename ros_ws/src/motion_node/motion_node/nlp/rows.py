@@ -120,9 +120,8 @@ class Demand:
             np.concatenate([demand.upper for demand in demands], axis),
         )
 
-    def at(self, step: int) -> Demand:
-        """What is asked at one step."""
-        here = slice(step, step + 1)
+    def at(self, here: Sequence[int]) -> Demand:
+        """What is asked at some of the steps."""
         return Demand(self.parameters[here], self.lower[here], self.upper[here])
 
     def excess(self, values: Array) -> Array:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 
+from .buffered import Buffered
 from .program import TOLERANCE, Instance, Program
 from .solver import Found
 
@@ -25,36 +26,43 @@ class Sqp:
 
     def __init__(self, program: Program) -> None:
         self._program = program
-        self._quadratic = ca.conic(
+        slopes = program.jacobian.sparsity_out(1)
+        quadratic = ca.conic(
             "quadratic",
             "daqp",
-            {"h": program.hessian_sparse.sparsity(), "a": program.jacobian.sparsity_out(1)},
+            {"h": program.hessian_sparse.sparsity(), "a": slopes},
             {"error_on_fail": False},
         )
+        self._jacobian, self._quadratic = Buffered(program.jacobian), Buffered(quadratic)
+        self._hessian = np.array(program.hessian_sparse.nonzeros())
+        # The same as a matrix, its columns one after another.
+        self._slopes = np.zeros(slopes.size2() * slopes.size1())
+        self._places = np.array(slopes.find(), dtype=int)
 
     def solve(self, instance: Instance) -> Found:
         """Where it converged, or where it gave up."""
         program = self._program
         z, step, trust = instance.start, np.inf, TRUST
         for iteration in range(MAX_STEPS + 1):
-            g, jacobian = program.jacobian(z, instance.p)
-            values = np.array(g).ravel()
+            g, jacobian = self._jacobian(z, instance.p)
+            values = g.copy()
             holds = instance.excess(values).max(initial=0.0) < TOLERANCE / 2
             done = step < STEP_TOLERANCE and holds
             if done or iteration == MAX_STEPS or not np.isfinite(values).all():
                 break
-            result = self._quadratic(
-                h=program.hessian_sparse,
-                g=program.hessian @ z + instance.linear,
-                a=jacobian,
-                lba=instance.lower_g - values,
-                uba=instance.upper_g - values,
-                lbx=np.maximum(instance.lower_z - z, -trust),
-                ubx=np.minimum(instance.upper_z - z, trust),
-            )
-            if not self._quadratic.stats()["success"]:
+            delta = self._quadratic(
+                self._hessian,
+                program.hessian @ z + instance.linear,
+                jacobian,
+                instance.lower_g - values,
+                instance.upper_g - values,
+                np.maximum(instance.lower_z - z, -trust),
+                np.minimum(instance.upper_z - z, trust),
+            )[0]
+            self._slopes[self._places] = jacobian
+            # Where the linearised constraints contradict one another, it stops somewhere.
+            if not instance.feasible(values + delta @ self._slopes.reshape(len(z), -1)):
                 break
-            delta = np.array(result["x"]).ravel()
             # Without the constraints' curvature, steps can go to and fro; shorter ones settle. A
             # step that ends at a limit of half the one before has done its part: rounding must not
             # decide whether it is cut again.

@@ -6,10 +6,10 @@ It only makes starting points; the bounds of :mod:`motion_node.bounds` decide wh
 
 from __future__ import annotations
 
-import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from ..nlp.buffered import Buffered
 from .model import FREEDOMS_OF_A_POSE, HAND_ROWS, POSITION_ROWS, ArmModel
 
 Array = NDArray[np.float64]
@@ -20,16 +20,19 @@ class InverseKinematics:
 
     def __init__(self, model: ArmModel) -> None:
         self._model = model
-        self._maps: dict[int, ca.Function] = {}
+        self._maps: dict[int, Buffered] = {}
 
     def _hands(self, q: Array) -> tuple[Array, Array]:
-        """Rows (k, HAND_ROWS) and Jacobians (k, HAND_ROWS, n) at configurations (k, n)."""
+        """Rows (k, HAND_ROWS) and Jacobians (k, HAND_ROWS, n) at configurations (k, n).
+
+        Both are overwritten by the next call.
+        """
         count = len(q)
         if count not in self._maps:
-            self._maps[count] = self._model.hand.map(count)
-        rows, jacobians = self._maps[count](q.T)
-        by_row = np.array(jacobians).reshape(HAND_ROWS, count, -1)
-        return np.array(rows).T, by_row.transpose(1, 0, 2)
+            self._maps[count] = Buffered(self._model.hand.map(count))
+        rows, jacobians = self._maps[count](q.ravel())
+        by_column = jacobians.reshape(count, -1, HAND_ROWS)
+        return rows.reshape(count, HAND_ROWS), by_column.transpose(0, 2, 1)
 
     def solve(
         self, positions_world: Array, yaws: Array, near: Array, iterations: int = 25
@@ -54,6 +57,11 @@ class InverseKinematics:
             step = jacobian.transpose(0, 2, 1) @ np.linalg.solve(gram, residual[:, :, None])
             q = np.clip(q - np.clip(step[:, :, 0], -0.5, 0.5), model.lower, model.upper)
         return q
+
+    def moved(self, q: Array, positions_world: Array) -> Array:
+        """As :meth:`solve`, near configurations (k, n) and with the fingers' directions there."""
+        rows, _ = self._hands(q)
+        return self.solve(positions_world, np.arctan2(rows[:, -1], rows[:, -2]), q)
 
     def residual(self, q: Array, positions_world: Array) -> Array:
         """Tool centre points at configurations (k, n) less positions, shape (k, 3) [m]."""

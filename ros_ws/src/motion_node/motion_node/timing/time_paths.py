@@ -38,10 +38,10 @@ class TimingSettings:
 
     velocity_scale: float = 0.9
     acceleration_scale: float = 0.7
-    close_seconds: float = 0.30
-    open_seconds: float = 0.25
+    close_seconds: float = 0.15
+    open_seconds: float = 0.15
     finger_speed: float = 0.1
-    finger_room: float = 0.01
+    finger_room: float = 0.005
     point_seconds: float = 0.02
     grid: TimeGrid = field(default_factory=TimeGrid)
 
@@ -134,7 +134,8 @@ def time_paths(
     """The trajectory through solved phases, with the fingers' closing and opening at the switches.
 
     The arm stands still for what happens at a block only: fingers open fully as the hand leaves,
-    and come near the next block as it arrives there.
+    and come near the next block as it arrives there. They press fully while a block is carried,
+    and half as far at its switches.
 
     Args:
         paths: all of as many steps.
@@ -155,19 +156,21 @@ def time_paths(
     ways = fastest(np.stack([path.q for path in paths]), scaled, settings.grid)
     for index, (path, way) in enumerate(zip(paths, ways)):
         phase = path.phase
-        wide = now if phase.tool.held or index == 0 else np.full(2, phase.tool.finger)
-        end = wide
+        wide = end = now if index == 0 and open_first is None else np.full(2, phase.tool.finger)
         if phase.kind == PICK:
             end = np.minimum(wide, _around(phase, settings))
-            if points.ramp(now, wide) + points.ramp(wide, end) > 0.9 * way.duration:
-                end = wide
+        elif phase.kind == PLACE and index > 0:
+            end = np.full(2, _lightly(phase, phase.tool.finger))
+        if points.ramp(now, wide) + points.ramp(wide, end) > 0.9 * way.duration:
+            end = wide
         points.travel(phase, way, now, wide, end)
         now = end
         if phase.kind == HOME:
             continue
-        target, seconds = np.full(2, phase.grip), settings.close_seconds
-        if phase.kind == PLACE:
-            seconds = settings.open_seconds
+        if phase.kind == PICK:
+            target, seconds = np.full(2, _lightly(phase, phase.grip)), settings.close_seconds
+        else:
+            target, seconds = np.full(2, phase.grip), settings.open_seconds
             around = np.minimum(target, _around(phase, settings))
             if (
                 index + 1 < len(ways)
@@ -177,6 +180,12 @@ def time_paths(
         points.grip(phase, path.q[-1], now, target, seconds)
         now = target
     return points.finish(paths[-1].q[-1], now)
+
+
+def _lightly(phase: Phase, pressing: float) -> float:
+    """Where each finger is sent half as far into a block as when it is carried [m]."""
+    assert phase.grasp is not None
+    return (phase.grasp.width / 2 + pressing) / 2
 
 
 def _around(phase: Phase, settings: TimingSettings) -> float:
