@@ -7,6 +7,7 @@ Nothing here is shared with the planner but the words of its answers.
 from __future__ import annotations
 
 import heapq
+import itertools
 import random
 from collections.abc import Callable, Mapping
 
@@ -110,7 +111,7 @@ def holds(state: State, relation: Relation) -> bool:
     return any(
         (relation.object, relation.subject) == pair
         for column in columns
-        for pair in zip(column, column[1:])
+        for pair in itertools.pairwise(column)
     )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plans that put nothing where it is unstable, by brute force over all sequences of moves (5.4.2)."""
+"""Plans that put nothing where it is unstable (5.4.2), by brute force over all arrangements."""
 
 from __future__ import annotations
 
@@ -152,6 +152,4 @@ def test_a_search_that_ends_early_does_not_let_anything_fall() -> None:
     wanted = goal("blue on stack0, green on stack1")
     start: Stacks = (("green_box",), ("blue_box",), ("pink_box", "red_sphere"))
     with pytest.raises(SearchLimitError, match="the shortest plan puts"):
-        make_stable_plan(
-            start, wanted, rules(FIGURES), max_expansions=6, algorithm="a_star"
-        )
+        make_stable_plan(start, wanted, rules(FIGURES), max_expansions=6, algorithm="a_star")

@@ -95,9 +95,7 @@ def make_stable_plan(
     )
 
 
-def _check_goal(
-    initial: Stacks, goal: Goal, stability: Stability, shortest: SearchResult
-) -> None:
+def _check_goal(initial: Stacks, goal: Goal, stability: Stability, shortest: SearchResult) -> None:
     """Raises UnstableError where the goal itself asks for what cannot stand."""
     spots = spots_of(initial)
     for relation in goal.relations:
