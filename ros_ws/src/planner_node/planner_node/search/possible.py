@@ -2,9 +2,10 @@
 """Shortest plans without moves that the arm cannot make (3.4) or after which a block falls (5.4.2).
 
 The verdicts of the motion problem's bounds come back as exclusions; what may stand on what is known
-beforehand. What is left is searched by A* with the bound of :mod:`a_star`, which stays a lower
-bound where moves are missing or cost more. So a plan that is found is shortest among those that are
-possible as far as anybody knows, and puts as little as possible where it is unstable.
+beforehand. What is left is searched from both ends where that is enough, and else by A* with the
+bound of :mod:`a_star`, which stays a lower bound where moves are missing or cost more. So a plan
+that is found is shortest among those that are possible as far as anybody knows, and puts as little
+as possible where it is unstable.
 """
 
 from __future__ import annotations
@@ -20,14 +21,17 @@ from ..errors import ImpossibleError, UnreachableError
 from ..goals.goal import Goal
 from ..validator import validate_plan
 from .a_star import Following, a_star, moves_left
+from .both_ends import both_ends
 from .conditions import Condition, Conditions
-from .limits import DEFAULT_MAX_EXPANSIONS, Limits
+from .limits import DEFAULT_MAX_EXPANSIONS, Limits, PartTooLargeError
 from .plan import SearchResult
 from .stability import Stability
 from .state import ANY, Problem, State
 
 #: What a placement that is unstable costs: more than any number of moves.
 _UNSTABLE: Final = 1 << 40
+#: Expansions from both ends, a second or two, before A* is tried.
+_FROM_BOTH_ENDS: Final = 400_000
 #: The first of the symbols for blocks that only differ in what can stand on what.
 _FIRST_KIND: Final = 0x2000
 
@@ -113,7 +117,7 @@ def plan_avoiding(
     named = frozenset().union(*[item.names for item in exclusions])
     problem = _Named(initial, goal, named, stability)
     try:
-        path = a_star(problem, limits, _possible(problem, exclusions), _cost_left(problem))
+        path = _cheapest(problem, exclusions, limits)
     except UnreachableError as error:
         if not exclusions:
             raise
@@ -131,6 +135,28 @@ def plan_avoiding(
         states.append(apply_move(states[-1], move))
     validate_plan(initial, goal, moves, states)
     return SearchResult(moves, tuple(states), limits.expanded, limits.seconds())
+
+
+def _cheapest(problem: _Named, exclusions: Sequence[Exclusion], limits: Limits) -> list[State]:
+    """From both ends as long as nothing but unstable placements is left out, then by A*.
+
+    Both ends find the shortest stable plan sooner, and prove sooner that there is none. What they
+    cannot do is to count unstable placements.
+    """
+    unstable = {pair for pair, price in problem.prices.items() if price != 1}
+    falling = {pair for pair, price in problem.prices.items() if not price}
+    if unstable and problem.target is not None and not exclusions:
+        part = limits.of_a_part(_FROM_BOTH_ENDS)
+        try:
+            try:
+                return both_ends(problem, part, unstable)
+            except UnreachableError:
+                if falling == unstable:
+                    raise
+                both_ends(problem, part, falling)  # raises where there is no plan at all
+        except PartTooLargeError:
+            pass
+    return a_star(problem, limits, _possible(problem, exclusions), _cost_left(problem))
 
 
 class _Named(Problem):
