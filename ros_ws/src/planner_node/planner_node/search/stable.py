@@ -44,7 +44,7 @@ def make_stable_plan(
     Args:
         stability: None: what stands on what does not matter.
         exclusions: moves that the arm cannot make.
-        algorithm: of the search among all plans; that among the stable ones is an A*.
+        algorithm: of the search among all plans; among the stable ones :mod:`possible` searches.
 
     Raises:
         UnstableError: proven: every plan puts a block where it cannot stand, or, where stability is
