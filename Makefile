@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual record eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-planner bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual record eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -91,6 +91,9 @@ bench-obstacles: setup  ## goals among walls, narrow places and places out of re
 
 bench-planner: setup  ## search times, lengths and bounds; FD=venv with up-fast-downward QUICK=1
 	@$(RUN) python benchmarks/bench_planner.py $(if $(FD),--fd "$(FD)")
+
+bench-stability: setup  ## plans for spheres, prisms and mixed sizes, beside brute force; QUICK=1
+	@$(RUN) python benchmarks/bench_stability.py
 
 results: setup  ## docs/results.md from the result files
 	@$(RUN) python benchmarks/write_results_page.py

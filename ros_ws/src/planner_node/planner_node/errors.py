@@ -91,6 +91,16 @@ class UnreachableError(SearchError):
     status = "UNREACHABLE"
 
 
+class UnstableError(UnreachableError):
+    """Proven: every plan would put a block where it cannot stand; ``placements`` are examples."""
+
+    def __init__(
+        self, problem: str, expanded: int, seconds: float, placements: Sequence[object] = ()
+    ) -> None:
+        super().__init__(problem, expanded, seconds)
+        self.placements = tuple(str(item) for item in placements)
+
+
 class ImpossibleError(SearchError):
     """Proven: without the moves that the arm cannot make, no sequence fulfils the goal.
 

@@ -37,11 +37,19 @@ from .conversions import (
 from .errors import BusyError, ConflictError, NotConfidentError, PlannerError, SearchError
 from .goals import Goal
 from .image_client import ImageClient
-from .loop import ClosedLoop, MotionLink, Outcome, Progress, SceneWatch, Status, plan_for
+from .loop import (
+    ClosedLoop,
+    MotionLink,
+    Outcome,
+    Progress,
+    SceneWatch,
+    Status,
+    plan_for,
+    plan_in,
+)
 from .loop.account import in_the_view
 from .parameters import PARAMETERS
 from .plan_publisher import PlanPublisher
-from .search import make_plan
 from .settings import LATENT, Settings
 
 if TYPE_CHECKING:
@@ -168,14 +176,7 @@ class PlannerNode(Node):
             goal, found = self._latent.plan(request, scene.stacks, scene.stamp)
         else:
             goal = resolve(scene.stacks)
-            settings = self._settings
-            found = make_plan(
-                scene.stacks,
-                goal,
-                settings.max_expansions,
-                self._is_shut_down,
-                settings.search_algorithm,
-            )
+            found = plan_in(scene, goal, self._settings, self._is_shut_down)
         plan = plan_for(scene, goal, found, self._scenes.now())
         response.expanded, response.planning_seconds = found.expanded, found.seconds
         response.plan, response.states = plan_to_message(plan), predicted_to_messages(plan)
@@ -184,7 +185,8 @@ class PlannerNode(Node):
             response.message = f"nothing to do: '{goal}' holds already"
             return
         response.status = int(Status.SUCCESS)
-        response.message = f"{len(plan.moves)} moves to '{goal}'"
+        told = f"{len(plan.moves)} moves to '{goal}'"
+        response.message = "; ".join(filter(None, (told, found.note)))
         if request.execute:
             self._check_conflict()
             claim = _Claim("a plan of plan_to_goal", self._is_shut_down)

@@ -8,7 +8,18 @@ from typing import Final
 from tamp_runtime.parameters import ParameterSpec
 
 from .search import ALGORITHMS, algorithm_named
-from .settings import EACH_MOVE, END, REPRESENTATIONS, VERIFY, WATCH, Settings
+from .settings import (
+    AVOID,
+    EACH_MOVE,
+    END,
+    IGNORE,
+    REPRESENTATIONS,
+    REQUIRE,
+    STABILITY,
+    VERIFY,
+    WATCH,
+    Settings,
+)
 
 _DEFAULTS: Final = Settings()
 
@@ -25,6 +36,11 @@ def _algorithm_problem(name: str) -> str:
 def _verify_problem(name: str) -> str:
     """end, each_move or watch"""
     return "" if name in VERIFY else f"verify = {name!r}; there are {', '.join(VERIFY)}"
+
+
+def _stability_problem(name: str) -> str:
+    """avoid, require or ignore"""
+    return "" if name in STABILITY else f"stability = {name!r}; there are {', '.join(STABILITY)}"
 
 
 def _representation_problem(name: str) -> str:
@@ -117,5 +133,21 @@ PARAMETERS: Final = (
         f"{END}: after the last move; {EACH_MOVE}: after each, for which the arm goes home; "
         f"{WATCH}: all the time, and the arm is stopped where they differ.",
         check=_verify_problem,
+    ),
+    ParameterSpec(
+        "stability",
+        _DEFAULTS.stability,
+        "What plans put on what, by the shapes and sizes that are seen. Nothing is put on a sphere "
+        f"or prism; a block on a much narrower one: {AVOID}: where no plan avoids it, and the "
+        f"answer says so; {REQUIRE}: never. {IGNORE}: shapes and sizes do not matter.",
+        check=_stability_problem,
+    ),
+    ParameterSpec(
+        "max_width_ratio",
+        _DEFAULTS.max_width_ratio,
+        "A block more than this many times as wide as what it stands on is unstable; 1.5 goes with "
+        "the motion node's max_overhang of 0.2.",
+        1.0,
+        10.0,
     ),
 )

@@ -30,6 +30,7 @@ from .errors import (
     TooManyReplansError,
     UnknownObjectError,
     UnreachableError,
+    UnstableError,
 )
 from .goals import Goal, check_contradictions, complete_goal, parse_goal, resolve_goal
 from .loop import (
@@ -57,6 +58,8 @@ from .search import (
     make_plan,
     successors,
 )
+from .search.stability import Figure, Stability, Unstable, stability_of
+from .search.stable import make_stable_plan
 from .settings import Settings
 
 __all__ = [
@@ -69,6 +72,7 @@ __all__ = [
     "ClosedLoop",
     "ConflictError",
     "ContradictoryGoalError",
+    "Figure",
     "Goal",
     "GoalImageError",
     "GraphModel",
@@ -97,6 +101,7 @@ __all__ = [
     "SearchResult",
     "Settings",
     "Sighting",
+    "Stability",
     "StacksModel",
     "Stage",
     "State",
@@ -104,13 +109,17 @@ __all__ = [
     "TooManyReplansError",
     "UnknownObjectError",
     "UnreachableError",
+    "Unstable",
+    "UnstableError",
     "apply_to_graph",
     "check_contradictions",
     "complete_goal",
     "make_plan",
+    "make_stable_plan",
     "parse_goal",
     "plan_for",
     "resolve_goal",
     "scene_in",
+    "stability_of",
     "successors",
 ]

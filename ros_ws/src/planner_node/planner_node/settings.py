@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from .search import AUTO, DEFAULT_MAX_EXPANSIONS
+from .search.stability import MAX_WIDTH_RATIO
 
 #: When a plan that is carried out is compared with what the camera sees: after its last move, after
 #: each, or all the time.
@@ -19,6 +20,12 @@ VERIFY: Final = (END, EACH_MOVE, WATCH)
 SCENE_GRAPH: Final = "scene_graph"
 LATENT: Final = "latent"
 REPRESENTATIONS: Final = (SCENE_GRAPH, LATENT)
+
+#: What stands on what: nothing unstable where a plan avoids it, nothing at all, or whatever.
+AVOID: Final = "avoid"
+REQUIRE: Final = "require"
+IGNORE: Final = "ignore"
+STABILITY: Final = (AVOID, REQUIRE, IGNORE)
 
 
 @dataclass
@@ -39,6 +46,8 @@ class Settings:
     motion_silence_timeout: float = 15.0
     max_replans: int = 5
     verify: str = END
+    stability: str = AVOID
+    max_width_ratio: float = MAX_WIDTH_RATIO
 
     def update(self, values: Mapping[str, Any]) -> None:
         """Takes over the values of some parameters by name."""

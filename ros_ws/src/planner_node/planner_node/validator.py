@@ -7,12 +7,28 @@ search and everything that is published.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
-from scene_graph import ABOVE, LEFT, NOT, PREDICATES, UP, Move, Relation, Spot, base_index
+from scene_graph import (
+    ABOVE,
+    LEFT,
+    NOT,
+    PREDICATES,
+    PRISM,
+    SPHERE,
+    UP,
+    Move,
+    Relation,
+    Spot,
+    base_index,
+)
 
 from .errors import PlannerError
 from .goals.goal import Goal
+
+if TYPE_CHECKING:
+    from .search.stability import Figure, Stability, Unstable
 
 
 class InvalidPlanError(PlannerError):
@@ -59,6 +75,45 @@ def validate_plan(
         true = [relation for relation in count.relations if _holds(relation, stacks)]
         if not count.least <= len(true) <= count.most:
             raise InvalidPlanError(f"after the last move '{count}' is not true", len(moves))
+
+
+def validate_stability(
+    initial: Sequence[Sequence[str]],
+    moves: Sequence[Move],
+    stability: Stability,
+    told: Iterable[Unstable],
+) -> None:
+    """Raises InvalidPlanError where a plan puts a block where it may not, or does not tell of it.
+
+    Args:
+        moves: of a plan that :func:`validate_plan` found right.
+        told: what the plan says that it puts where it is unstable.
+    """
+    left = {(item.step, item.block, item.support) for item in told}
+    stacks = [list(stack) for stack in initial]
+    for step, move in enumerate(moves):
+        block = stacks[move.source].pop()
+        support = stacks[move.target][-1] if stacks[move.target] else ""
+        stacks[move.target].append(block)
+        upper, lower = stability.figures.get(block), stability.figures.get(support)
+        falls = lower is not None and lower.shape in (SPHERE, PRISM)
+        if not falls and not _too_wide(upper, lower, stability.max_width_ratio):
+            continue
+        if falls or stability.require or (step, block, support) not in left:
+            raise InvalidPlanError(
+                f"move {step + 1}, {move}, puts {block} on {support}, where it is unstable", step
+            )
+        left.remove((step, block, support))
+    if left:
+        raise InvalidPlanError(f"the plan is said to put {min(left)} where it does not", len(moves))
+
+
+def _too_wide(upper: Figure | None, lower: Figure | None, ratio: float) -> bool:
+    if upper is None or lower is None or upper.shape == SPHERE:
+        return False
+    if 0.0 in (lower.long, lower.short):
+        return False
+    return upper.long > ratio * lower.long or upper.short > ratio * lower.short
 
 
 def _compare(

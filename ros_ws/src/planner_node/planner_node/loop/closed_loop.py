@@ -83,7 +83,7 @@ class ClosedLoop:
             *(cancelled, conflict, self._stopped, shut_down),
             newest=lambda: scenes.newest,
         )
-        self._patience, self._contradictions = 1, list[str]()
+        self._patience, self._remarks = 1, list[str]()
         self._possible = PossibleMoves(settings, cancelled)
         self._requested = scenes.now()
         self.outcome = Outcome()
@@ -146,7 +146,7 @@ class ClosedLoop:
         seen = format_stacks(scene.stacks)
         if not plans:
             return Status.ALREADY_TRUE, f"nothing to do: '{goal}' holds in {seen}"
-        told = "".join(f"; {sentence}" for sentence in self._contradictions)
+        told = "".join(f"; {sentence}" for sentence in dict.fromkeys(self._remarks))
         return Status.SUCCESS, f"the camera confirms '{goal}': {seen}{told}"
 
     def _work_off(self, scene: Scene, goal: Goal, found: SearchResult) -> Scene:
@@ -186,7 +186,7 @@ class ClosedLoop:
             self._because(str(error))
             raise failure from error
         if end.contradicted and watch is not None:
-            self._contradictions.append(watch.contradiction)
+            self._remarks.append(watch.contradiction)
             if watch.is_as_predicted(scene, end.report.moves_done):
                 self._patience *= 2
         if difference := describe_difference(plan, end.report, scene):
@@ -250,7 +250,11 @@ class ClosedLoop:
     def _plan(self, scene: Scene, goal: Goal) -> SearchResult:
         self._tell(Stage.PLANNING, f"searching from {format_stacks(scene.stacks)} to '{goal}'")
         with self._timed("plan_seconds"):
-            return self._possible.plan(scene, goal)
+            found = self._possible.plan(scene, goal)
+        if found.note:
+            self._tell(Stage.PLANNING, found.note)
+            self._remarks.append(f"the plan was {found.note}")
+        return found
 
     def _add_up(self, last: MotionReport, elapsed: float) -> None:
         """Notes what became of a plan; ``elapsed`` [s] is motion optimisation and execution."""

@@ -13,11 +13,12 @@ from typing import Final
 from tamp_runtime.motion_report import Excludes, MotionReason, MotionReport, MotionState
 
 from ..goals.goal import Goal
-from ..search import SearchResult, make_plan
-from ..search.possible import Exclusion, plan_avoiding
+from ..search import SearchResult
+from ..search.possible import Exclusion
 from ..settings import Settings
 from .plan import Plan
 from .scene import Scene
+from .scene_plan import plan_in
 
 #: So many refusals in one scene; then it is given up like any other motion that fails.
 MOST: Final = 60
@@ -51,11 +52,7 @@ class PossibleMoves:
         Raises:
             PlannerError: as the search; ImpossibleError where only refused moves lead to the goal.
         """
-        settings = self._settings
-        limits = (settings.max_expansions, self._cancelled)
-        if not self._exclusions:
-            return make_plan(scene.stacks, goal, *limits, settings.search_algorithm)
-        return plan_avoiding(scene.stacks, goal, self._exclusions, *limits)
+        return plan_in(scene, goal, self._settings, self._cancelled, self._exclusions)
 
     def forget_once(self) -> bool:
         """Forgets all, once: poses that are seen anew may be possible. False: not again."""

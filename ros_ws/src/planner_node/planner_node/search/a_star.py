@@ -4,26 +4,38 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 
 from scene_graph import ABOVE, UP, Relation, base_index
 
 from .limits import Limits
 from .state import Parents, Problem, State, path_to, successors
 
-#: What a state leads to: the states after possible moves, and the symbol of what is moved.
-Successors = Callable[[State], Iterable[tuple[State, str]]]
+#: What a state leads to: the states after possible moves, and what each move costs.
+Following = Callable[[State], Iterable[tuple[State, int]]]
 
 
-def a_star(problem: Problem, limits: Limits, following: Successors = successors) -> list[State]:
-    """Expands the states of least depth + bound first; of equals the one nearest to a goal.
+def each_for_one(state: State) -> Iterator[tuple[State, int]]:
+    """Every move, at the cost of one."""
+    return ((after, 1) for after, _ in successors(state))
+
+
+def a_star(
+    problem: Problem,
+    limits: Limits,
+    following: Following = each_for_one,
+    least: Callable[[State], int] | None = None,
+) -> list[State]:
+    """Expands the states of least cost + bound first; of equals the one nearest to a goal.
 
     Args:
-        following: fewer of them leave the bound a bound.
+        following: fewer states, or higher costs than one, leave the bound a bound.
+        least: a bound on the cost that is left, which no move lowers by more than it costs; None:
+            that on the moves.
     """
-    bound = moves_left(problem)
+    bound = least or moves_left(problem)
     parents: Parents = {problem.start: None}
-    depths = {problem.start: 0}
+    costs = {problem.start: 0}
     expanded: set[State] = set()
     left = bound(problem.start)
     queue = [(left, left, problem.start)]
@@ -35,14 +47,15 @@ def a_star(problem: Problem, limits: Limits, following: Successors = successors)
             return path_to(state, parents)
         expanded.add(state)
         limits.count_expansion()
-        depth = depths[state] + 1
-        for successor, _ in following(state):
-            # The bound is consistent, so that an expanded state has been reached the shortest way.
-            if depth >= depths.get(successor, depth + 1):
+        so_far = costs[state]
+        for successor, price in following(state):
+            cost = so_far + price
+            # The bound is consistent, so that an expanded state has been reached the cheapest way.
+            if cost >= costs.get(successor, cost + 1):
                 continue
-            depths[successor], parents[successor] = depth, state
+            costs[successor], parents[successor] = cost, state
             left = bound(successor)
-            heapq.heappush(queue, (depth + left, left, successor))
+            heapq.heappush(queue, (cost + left, left, successor))
     raise limits.unreachable()
 
 

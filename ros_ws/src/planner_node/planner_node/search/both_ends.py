@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Final
 
 from .breadth_first import breadth_first
@@ -15,7 +16,9 @@ CHUNK: Final = 16
 _NOWHERE: Final = -1
 
 
-def both_ends(problem: Problem, limits: Limits) -> list[State]:
+def both_ends(
+    problem: Problem, limits: Limits, forbidden: Collection[str] = frozenset()
+) -> list[State]:
     """Whole layers in turns from both ends; the first state that both know is on a shortest path.
 
     Once the layers up to depths d and e are complete and disjoint, no path is shorter than
@@ -23,6 +26,10 @@ def both_ends(problem: Problem, limits: Limits) -> list[State]:
     A goal that is not complete has no other end: it is searched for from the start alone.
 
     The block that was moved last is not moved on: where it would go it could have gone at once.
+
+    Args:
+        forbidden: pairs of symbols of which the first is never put on the second; what stands so
+            at the start may stay. Backwards, nothing is taken from where it cannot have been put.
     """
     if problem.target is None:
         return breadth_first(problem, limits)
@@ -35,6 +42,7 @@ def both_ends(problem: Problem, limits: Limits) -> list[State]:
     while near_layer and far_layer:
         forward = len(near_layer) <= len(far_layer)
         ours, theirs, layer = (near, far, near_layer) if forward else (far, near, far_layer)
+        not_on, not_from = (forbidden, ()) if forward else ((), forbidden)
         found: list[tuple[State, int]] = []
         offset = 0
         while offset < len(layer):
@@ -46,9 +54,13 @@ def both_ends(problem: Problem, limits: Limits) -> list[State]:
                     if source == last or not stack:
                         continue
                     stacks, top = list(state), stack[-1]
+                    if not_from and top + stack[-2:-1] in not_from:
+                        continue
                     stacks[source] = stack[:-1]
                     for target in places:
                         if target == source:
+                            continue
+                        if not_on and top + state[target][-1:] in not_on:
                             continue
                         stacks[target] += top
                         successor = tuple(stacks)

@@ -16,6 +16,7 @@ from ..validator import validate_plan
 from .algorithms import AUTO, algorithm_named
 from .blame import excluding_parts
 from .limits import DEFAULT_MAX_EXPANSIONS, Limits
+from .stability import Unstable
 from .state import Problem, State
 
 
@@ -28,7 +29,10 @@ class SearchResult:
         states: the initial state and the one after each move.
         expanded: number of states whose successors were generated.
         seconds: wall time.
-        bound: how many times as long as a shortest plan it is at most, proven; 1.0: it is shortest.
+        bound: how many times as long as a shortest plan it is at most, proven; 1.0: it is shortest,
+            or shortest of those that put nothing where it is unstable.
+        unstable: what it puts where it is unstable, as far as that was asked for.
+        note: a sentence on that for people; empty where there is nothing to be said.
     """
 
     moves: tuple[Move, ...]
@@ -36,6 +40,8 @@ class SearchResult:
     expanded: int
     seconds: float
     bound: float = 1.0
+    unstable: tuple[Unstable, ...] = ()
+    note: str = ""
 
     def move_by_move(self) -> tuple[SearchResult, ...]:
         """The same in as many parts as there are moves."""
