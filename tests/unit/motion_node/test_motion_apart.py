@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from executive_bench import Bench
-from simulated_arm import BESIDE, HALF_BLOCK, HOME_Q, OPEN, SWITCHES, two_moves
+from simulated_arm import BESIDE, HALF_BLOCK, HOME_Q, OPEN, PLAN, SWITCHES, two_moves
 from stock_oracle import seconds
-from tamp_runtime.motion_report import ArmPlace, MotionReason, MotionState
+from tamp_runtime.motion_report import SOMETHING, ArmPlace, MotionReason, MotionState
 from two_controller_arm import ARM, TwoControllerArm
 
 from motion_node.execution.settings import ExecutionSettings, StepSettings
@@ -181,3 +181,29 @@ def test_a_simulation_that_is_fast_gets_its_trajectories_in_time(bench: Bench) -
     assert bench.carry_out().state is MotionState.SUCCEEDED
     np.testing.assert_allclose(arm.joints.arm, HOME_Q, atol=1e-3)
     np.testing.assert_allclose(arm.joints.fingers, OPEN, atol=1e-3)
+
+
+def half_open_and_idle(bench: Bench) -> TwoControllerArm:
+    """Fingers that somebody else left half open, and nothing between them."""
+    arm = arm_of(bench)
+    arm.block = 0.0
+    arm.gripper_topic.controller.state = [0.02, 0.02]
+    arm.gripper_topic.controller.stand()
+    arm.pass_time(1.0)
+    return arm
+
+
+def test_a_gripper_that_hears_late_is_not_taken_for_a_hand_that_holds(bench: Bench) -> None:
+    arm = half_open_and_idle(bench)
+    arm.gripper_topic.late = 5.0
+    end = bench.carry_out(replace(PLAN, moves=()))
+    assert (end.state, end.held) == (MotionState.CANCELLED, ""), end.message
+
+
+def test_a_gripper_that_hears_again_is_felt_again(bench: Bench) -> None:
+    arm = half_open_and_idle(bench)
+    arm.gripper_topic.lost = True
+    assert bench.carry_out(replace(PLAN, moves=())).held == SOMETHING
+    arm.gripper_topic.lost = False
+    end = bench.carry_out(replace(PLAN, moves=()))
+    assert (end.state, end.held) == (MotionState.CANCELLED, ""), end.message

@@ -282,7 +282,10 @@ class Follower:
         patience, begin = self._patience(), state.stamp
         enough = float(np.mean(now.fingers - goal)) / 2
         # Fingers that have not moved yet may not have been told yet: only moving proves anything.
-        while state.stamp - begin < FEEL_SECONDS:
+        patient = FEEL_SECONDS
+        if self.settings.in_step:  # a gripper's own controller may be late by itself
+            patient = max(patient, self.settings.monitor.start_seconds)
+        while state.stamp - begin < patient:
             state = patience.wait(state)
             if float(np.mean(now.fingers - state.positions.fingers)) >= enough:
                 return False

@@ -96,6 +96,10 @@ class Recovery:
             ClosedError: if the node ends.
         """
         failure: Exception | None = None
+        grip = self._follower.grip
+        if self._follower.settings.in_step and grip.held == SOMETHING:
+            # What resisted may have been a gripper that did not hear; it may hear by now.
+            self._follower.grip = replace(grip, held="")
         for _ in range(ATTEMPTS):
             try:
                 state = self._follower.wait_for_rest(seconds=_REST_SECONDS)
