@@ -141,7 +141,7 @@ def test_fault_5_statuses_go_on_after_a_plan_and_late_listeners_hear_them(bench:
 
 def test_fault_2_a_block_is_put_down_when_its_trajectory_ends_early(bench: Bench) -> None:
     bench.start(max_lag=2.0)
-    bench.arm.cut_at = 2.0  # with the block in the hand
+    bench.arm.cut_at = 1.65  # with the block in the hand
     bench.planner.ask(plan_message("a", (0, 2)))
     end = bench.end("a")
     assert (end.state, end.reason) == (MotionStatus.FAILED, MotionStatus.TRACKING_LOST)

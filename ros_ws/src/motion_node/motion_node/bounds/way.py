@@ -107,7 +107,7 @@ class Way:
             return True
         begin, way = first.reference[:2], last.reference[:2] - first.reference[:2]
         away = np.array(column.center) - begin
-        share = float(np.clip(away @ way / max(way @ way, 1e-9), 0.0, 1.0))
+        share = float(np.clip(away @ way / max(float(way @ way), 1e-9), 0.0, 1.0))
         return float(np.hypot(*(away - share * way))) < BESIDE
 
     def corners(self, higher: float, inwards: float) -> list[Corner]:
