@@ -14,24 +14,26 @@ from .language import (
     CLEAR,
     HEADING,
     IT,
+    MODALS,
     MUTE,
     NEGATION,
     NOUN_VERBS,
     NOUNS,
     NUMBERS,
-    ORDERS,
     TAKES,
     meant,
 )
+from .orders import ORDERS
 from .phrases import RIGHT_WORDS, Found, find, phrases_in
 from .plainer import plainer
-from .sentences import end_of
 from .terms import Kind, Term, Words, term_of
 
 EXAMPLE: Final = "write relations like 'red on blue, green left of red'"
 
 _WANTS: Final = frozenset({"want", "wants"})
 _GOES: Final = frozenset({"go", "be", "sit", "stand", "come"})
+_AGAIN: Final = frozenset({"so", "neither", "nor"})
+_MODALS: Final = MODALS | {"is", "may", "can", "does", "do", "will"}
 _ANY: Final = {"anything": "nothing", "any": "no"}
 _SKIPPED: Final = MUTE | TAKES | {NEGATION}
 
@@ -46,6 +48,7 @@ class Said:
         takes: it only says what to take, as in "take red and put it on blue".
         clears: it says of the name that nothing stands on it.
         order: the names that follow are a tower or a row, see ``ORDERS``; None: they are not.
+        again: what was said before is said of its subject too: "so should blue", "nor should blue".
         asks: it has a verb, but no relation, as in "on blue, put red".
         edge: "top" or "bottom" where its subject is said to be there, of the place that is meant.
         adjacent: it says "directly left of": the places are neighbours too.
@@ -62,6 +65,7 @@ class Said:
     of_object: bool = False
     edge: str | None = None
     adjacent: bool = False
+    again: str = ""
 
     def denies(self, subjects: Sequence[Term]) -> bool:
         """Whether its last relation does not hold: a list behind it then may go on."""
@@ -78,6 +82,8 @@ def read_clause(text: str, words: list[Words]) -> Said:
         words = words[2:]
     if words[0].text == "can" and any(item.text in _GOES for item in words):
         words = words[1:]
+    if len(words) > 2 and words[0].text in _AGAIN and words[1].text in _MODALS:
+        return Said(words, term_of(words[2:]), again=words[0].text)
     if plain := plainer(words):
         said = read_clause(text, plain.words)
         if plain.adjacent and (len(said.links) != 1 or said.links[0][1]):
@@ -275,7 +281,7 @@ def _taken(words: Sequence[Words]) -> list[Words]:
 
 def no_relation(text: str, words: Sequence[Words]) -> InvalidGoalError:
     """The error of a part of a goal that relates nothing to nothing."""
-    start, end = words[0].offset, end_of(words)
+    start, end = words[0].offset, words[-1].stop
     return InvalidGoalError(
         f"no relation found; known are {', '.join(_known())}; {EXAMPLE}", start, text[start:end]
     )
@@ -283,7 +289,7 @@ def no_relation(text: str, words: Sequence[Words]) -> InvalidGoalError:
 
 def _missing(side: str, text: str, words: Sequence[Words], item: Found) -> InvalidGoalError:
     written = words[item.first : item.last]
-    start, end = written[0].offset, end_of(written)
+    start, end = written[0].offset, written[-1].stop
     return InvalidGoalError(f"there is no block {side} this", start, text[start:end])
 
 

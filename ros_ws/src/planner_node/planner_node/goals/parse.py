@@ -19,7 +19,7 @@ from scene_graph import PREDICATES, UP, Phrase
 from ..errors import InvalidGoalError
 from .clauses import EXAMPLE, Said, no_relation, read_clause
 from .language import ALL_OF, BOTH, IT
-from .lists import is_listed, row_of, turned_at_comma
+from .lists import is_listed, row_before, row_of, turned_at_comma
 from .objections import unclear, untold
 from .parsed import ParsedRelation
 from .sentences import is_heading, sentences
@@ -64,9 +64,12 @@ class _Reader:
         said = turned_at_comma(sentence)
         for number, clause in enumerate(said):
             if clause.order is not None:
+                before = [other for other in said[:number] if not is_heading(other.words)]
                 names, rest = row_of(said[number + 1 :])
+                if not names:
+                    before, clause, names = row_before(before, clause)
                 self._read_row(clause, clause.order, names)
-                said = [*(other for other in said[:number] if not is_heading(other.words)), *rest]
+                said = [*before, *rest]
                 break
         waiting: list[Said] = []
         subjects: list[Term] = []
@@ -76,6 +79,9 @@ class _Reader:
             named = [other.subject for other in waiting if other.subject is not None]
             if clause.takes and is_listed(said[number + 1 :]):
                 clause = replace(clause, takes=False)  # "get red and blue into stack 0"
+            if clause.again:
+                self._told.add_again(clause)
+                continue
             if clause.takes:
                 if waiting or self.taken:
                     raise no_relation(self._text, clause.words)
@@ -204,6 +210,9 @@ class _Reader:
             and len(named) > 1
         ):
             return list(named)  # "red and blue, put them in stack1"
+        if clause.subject.bare and clause.subject.kind is Kind.EVERY and (named or self._told.relations):
+            # "red, green and blue, all in stack 1"
+            return list(named) if len(named) > 1 else self._told.all_named(clause.subject)
         if clause.subject.words.text in BOTH:
             return [*named, *self._told.all_named(clause.subject)]
         if clause.subject.words.text in _WHICH and not named:
@@ -214,4 +223,4 @@ class _Reader:
             ):
                 raise unclear(clause.subject)
             return [self._told.object]
-        return [*named, self._told.meant(clause.subject, None)]
+        return [*named, self._told.meant(clause.subject, None, again=bool(clause.links))]

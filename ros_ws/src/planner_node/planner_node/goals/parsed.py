@@ -45,9 +45,13 @@ def in_one_place(blocks: Sequence[Term], same: bool, denied: bool) -> list[Parse
         None where it is not clear what is meant: of three that are not in the same stack, two may
         be.
     """
-    if any(term.kind is not Kind.THE or term.is_place for term in blocks) or len(blocks) < 2:
+    if len(blocks) == 1 and blocks[0].kind is Kind.EVERY and not blocks[0].is_place:
+        if denied and blocks[0].exact != 2:
+            return None
+        blocks = [blocks[0], blocks[0]]  # "the red ones in the same stack"
+    elif len(blocks) < 2 or any(term.kind is not Kind.THE or term.is_place for term in blocks):
         return None
-    if len(blocks) > 2 and denied:
+    elif len(blocks) > 2 and denied:
         return None
     # In one stack are those of which none is left of the other.
     predicate = PREDICATES[LEFT if same != denied else ABOVE]

@@ -7,14 +7,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from scene_graph import PREDICATES
+
 from .holdings import as_relation
-from .language import STEPS, TAKES, VERBS
+from .language import EXCEPT, MUTE, NOUN_VERBS, NOUNS, STEPS, TAKES, VERBS
+from .phrases import find
 from .terms import Words
 
 _EDGES: Final = (
     ("at", "top"), ("at", "very", "top"), ("on", "very", "top"), ("at", "bottom"),
     ("at", "very", "bottom"), ("on", "very", "bottom"),
 )  # fmt: skip
+_ENDS: Final = {
+    "top": "top", "topmost": "top", "uppermost": "top", "highest": "top", "bottom": "bottom",
+    "lowest": "bottom", "bottommost": "bottom", "base": "bottom",
+}  # fmt: skip
 _JUST: Final = {"just-left-of": "left", "just-right-of": "right"}
 
 
@@ -50,6 +57,10 @@ def plainer(words: Sequence[Words]) -> Plain | None:
             where = words[at]
             phrase = [Words(side, where.offset, where.stop), Words("of", where.stop)]
             return Plain([*words[:at], *phrase, *words[at + 1 :]], adjacent=True)
+    if told := _except_behind(words):
+        return Plain(told)
+    if told := _edge_of_place(words):
+        return Plain(told[0], edge=told[1])
     if texts[-1] == "either" and len(words) > 1:
         return Plain(list(words[:-1]))
     for ending in _EDGES:
@@ -57,4 +68,31 @@ def plainer(words: Sequence[Words]) -> Plain | None:
             return Plain(list(words[: -len(ending)]), edge=ending[-1])
     if held := as_relation(words):
         return Plain(held, of_object=True)
+    return None
+
+
+def _except_behind(words: Sequence[Words]) -> list[Words] | None:
+    """ "everything in stack1 except red" with whom it leaves out behind "everything"."""
+    at = next((index for index, item in enumerate(words) if item.text == EXCEPT), 0)
+    found = list(find(words[:at], PREDICATES.phrases))
+    if not found or not found[0].first:
+        return None
+    first = found[0].first
+    return [*words[:first], *words[at:], *words[first:at]]
+
+
+def _edge_of_place(words: Sequence[Words]) -> tuple[list[Words], str] | None:
+    """ "the top block of stack1 is red" as "red in stack1", and its edge."""
+    texts = [item.text for item in words]
+    edge = _ENDS.get(texts[0])
+    at = 1 + (len(texts) > 1 and texts[1] in NOUNS)
+    if edge is None or texts[at : at + 1] not in (["of"], ["in"], ["on"]):
+        return None
+    start = at + 1
+    for stop in (start + 2, start + 1):
+        name = Words(" ".join(texts[start:stop]), words[0].offset)
+        behind = [item for item in words[stop:] if item.text not in MUTE - NOUN_VERBS]
+        if stop < len(words) and name.is_place and behind:
+            inside = Words("in", words[at].offset, words[at].stop)
+            return [*behind, inside, *words[start:stop]], edge
     return None

@@ -19,7 +19,6 @@ from scene_graph import (
     UP,
     Phrase,
     Relation,
-    base_index,
     base_name,
 )
 
@@ -39,13 +38,9 @@ from .language import (
     meant,
 )
 from .parsed import ParsedRelation
+from .resolve_places import is_place_word, place_named, unknown_place
 from .terms import Kind, Term, Words
 
-#: What people call a place, with or without a number; only ``stack0`` … are places.
-_PLACE: Final = re.compile(
-    r"(stack|place|position|spot|slot|column|pile|tower|base)s?[ _-]*\d*"
-    r"|table|tabletop|floor|ground|desk|surface"
-)
 #: Left out of a name where they were typed wrong.
 _LEFT_OUT: Final = frozenset(MUTE) | {"the"}
 #: No typos of what is in the scene.
@@ -90,12 +85,20 @@ def _resolve_term(term: Term, names: Sequence[str], stack_count: int | None) -> 
         return (resolve_name(term.words, names, stack_count),)
     if term.is_every_place:
         if stack_count is None:
-            raise _unknown_place(term.words, None)
+            raise unknown_place(term.words, None)
         return tuple(base_name(index) for index in range(stack_count))
     if term.among:
         return tuple(resolve_name(words, names, stack_count) for words in term.among)
     left_out = {resolve_name(words, names, stack_count) for words in term.but}
-    return tuple(name for name in _fitting(term.words, names, stack_count) if name not in left_out)
+    found = tuple(name for name in _fitting(term.words, names, stack_count) if name not in left_out)
+    if term.exact is not None and len(found) != term.exact:
+        raise AmbiguousObjectError(
+            term.words.text,
+            found,
+            f"at offset {term.words.offset}: not {term.exact} but {len(found)} are called "
+            f"'{term.words.text}': {', '.join(found)}; name the ones that are meant",
+        )
+    return found
 
 
 def _meanings(
@@ -204,7 +207,7 @@ def resolve_name(words: Words, names: Sequence[str], stack_count: int | None = N
 
 def _fitting(words: Words, names: Sequence[str], stack_count: int | None) -> list[str]:
     """All that a name fits; raises UnknownObjectError where that is nothing."""
-    place = _place_named(words, stack_count)
+    place = place_named(words, stack_count)
     if place is not None:
         return [place]
     by_full_name = {name.lower(): name for name in names}
@@ -217,8 +220,8 @@ def _fitting(words: Words, names: Sequence[str], stack_count: int | None) -> lis
         candidates = sorted(name for name in names if wanted <= set(name.lower().split("_")))
         if candidates and mended:
             return candidates
-    if _PLACE.fullmatch(words.text):
-        raise _unknown_place(words, stack_count)
+    if is_place_word(words.text):
+        raise unknown_place(words, stack_count)
     raise _unknown_object(words, parts, names, known)
 
 
@@ -248,21 +251,6 @@ def _apart(part: str, known: set[str]) -> list[str]:
     return [part]
 
 
-def _place_named(words: Words, stack_count: int | None) -> str | None:
-    base = words.base
-    if base is not None:
-        index = base_index(base)
-        if stack_count is not None and index is not None and index >= stack_count:
-            raise _unknown_place(words, stack_count)
-        return base
-    side = words.side
-    if side is None:
-        return None
-    if stack_count is None or (side == "middle" and stack_count % 2 == 0):
-        raise _unknown_place(words, stack_count)
-    return base_name({"left": 0, "middle": stack_count // 2, "right": stack_count - 1}[side])
-
-
 def _unknown_object(
     words: Words, parts: Sequence[str], names: Sequence[str], known: set[str]
 ) -> UnknownObjectError:
@@ -281,21 +269,4 @@ def _unknown_object(
         words.text,
         sorted(names),
         f"at offset {words.offset}: there is no '{words.text}'; {listed}{hint}",
-    )
-
-
-def _unknown_place(words: Words, stack_count: int | None) -> UnknownObjectError:
-    """What to say of a name that looks like a place and is none."""
-    if stack_count is None:
-        known: tuple[str, ...] = ()
-        listed = f"places are called {base_name(0)}, {base_name(1)}, … from the left"
-    else:
-        known = tuple(base_name(index) for index in range(stack_count))
-        listed = f"the places are {', '.join(known)} from the left"
-    numbered = re.search(r"\d", words.text)
-    example = "" if numbered else f"; write which one, such as 'red on {base_name(0)}'"
-    return UnknownObjectError(
-        words.text,
-        known,
-        f"at offset {words.offset}: there is no place '{words.text}'; {listed}{example}",
     )

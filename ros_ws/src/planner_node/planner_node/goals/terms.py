@@ -17,6 +17,7 @@ from .language import (
     EXCEPT,
     MODALS,
     NOTHING_ELSE,
+    NOUNS,
     NUMBERS,
     OTHERS,
     PLACE_NOUNS,
@@ -26,6 +27,7 @@ from .language import (
 )
 
 _BASE: Final = re.compile(r"([a-z]+)[ _]?(?:number |no |nr )?(\d+)")
+_FROM_RIGHT: Final = re.compile(r"stack (\d+) from right")
 
 
 @dataclass(frozen=True)
@@ -45,9 +47,15 @@ class Words:
     def base(self) -> str | None:
         """The name of the base that is meant, or None where it is a block or another place."""
         match = _BASE.fullmatch(_with_digits(self.text))
-        if match is None or meant(match[1], {"stack"}) is None:
+        if match is None or not (match[1] in PLACE_NOUNS or meant(match[1], {"stack"})):
             return None
         return base_name(int(match[2]))
+
+    @property
+    def from_right(self) -> int | None:
+        """Which place it is from the right, from 0; None where it is not told from there."""
+        match = _FROM_RIGHT.fullmatch(self.text)
+        return int(match[1]) if match else None
 
     @property
     def side(self) -> str | None:
@@ -58,7 +66,7 @@ class Words:
     @property
     def is_place(self) -> bool:
         """Whether it is a place."""
-        return self.base is not None or self.side is not None
+        return any(one is not None for one in (self.base, self.side, self.from_right))
 
 
 class Kind(enum.Enum):
@@ -81,6 +89,8 @@ class Term:
         only: of THE, nothing else is there.
         listed: of COUNT, the names that follow are the ones that are counted.
         among: of COUNT, those that are counted; none: all that fit.
+        exact: of EVERY, how many there have to be; None: it is not said.
+        bare: it is a number alone, as in "two boxes in stack0, one in stack1".
     """
 
     words: Words
@@ -92,6 +102,8 @@ class Term:
     only: bool = False
     listed: bool = False
     among: tuple[Words, ...] = ()
+    exact: int | None = None
+    bare: bool = False
 
     @property
     def is_place(self) -> bool:
@@ -109,7 +121,7 @@ class Term:
         return self.kind is Kind.EVERY or (self.kind is Kind.COUNT and self.least > 1)
 
 
-_EVERY: Final = frozenset({"every", "each", "all"})
+_EVERY: Final = frozenset({"every", "each", "all", "both"})
 _SOME: Final = frozenset({"a", "an", "any", "some", "another"})
 _NO: Final = frozenset({"no", "none"})
 _ALONE: Final = {
@@ -120,6 +132,8 @@ _ALONE: Final = {
     "anything": Kind.COUNT,
     "all": Kind.EVERY,
 }
+#: "between two and three", "two or three".
+_RANGE: Final = re.compile(r"(\d+)-to-(\d+)")
 #: Which bounds a number has behind these words, and what is added to it.
 _BOUNDS: Final = {
     "at-least": (True, False, 0),
@@ -130,7 +144,11 @@ _BOUNDS: Final = {
 
 
 def term_of(words: Sequence[Words]) -> Term:
-    """Reads a quantity in front of a name: "three red blocks", "every box", "a cylinder"."""
+    """Reads a quantity in front of a name: "three red blocks", "every box", "a cylinder".
+
+    Raises:
+        InvalidGoalError: it does not say which or how many are meant.
+    """
     texts = [item.text for item in words]
     offset = words[0].offset
     whole = Words(" ".join(texts), offset)
@@ -149,27 +167,55 @@ def term_of(words: Sequence[Words]) -> Term:
         return Term(Words("block", offset), Kind.NO, 0, 0, others=True)
     if texts[0] in ("this", "that") and len(texts) > 1:
         return term_of(words[1:])
+    if texts[:2] == ["the-", "only"] and len(texts) > 2 and texts[-1] not in NOUNS:
+        return term_of(words[2:])  # "the only cylinder"
+    only = _only(words, whole)
+    if only is not None:
+        return only
+    return _quantified(words, whole)
+
+
+def _only(words: Sequence[Words], whole: Words) -> Term | None:
+    """ "only red", "red alone"; None where it says no such."""
+    texts = [item.text for item in words]
     first = texts[0] == "only" and len(texts) > 1 and _quantity(texts)[0] is Kind.THE
-    if first or (texts[-1] == "alone" and len(texts) > 1):
-        alone = term_of(words[1:] if first else words[:-1])
-        if alone.kind is not Kind.THE:
-            raise InvalidGoalError(
-                "it is not clear what 'only' is said of; name the blocks", offset, whole.text
-            )
-        return replace(alone, only=True)
+    if not first and not (texts[-1] == "alone" and len(texts) > 1):
+        return None
+    alone = term_of(words[1:] if first else words[:-1])
+    if alone.kind is not Kind.THE:
+        raise InvalidGoalError(
+            "it is not clear what 'only' is said of; name the blocks", whole.offset, whole.text
+        )
+    return replace(alone, only=True)
+
+
+def _quantified(words: Sequence[Words], whole: Words) -> Term:
+    """A name with what is in front of it: a number, "every", "a", "no", or nothing."""
+    texts, offset = [item.text for item in words], whole.offset
     if len(texts) == 2 and texts[0] in _ALONE and meant(texts[1], MODALS):
         texts = texts[:1]  # "nothing shoud be on red"
     if len(texts) == 1 and len(texts[0]) > 5:
         texts = [meant(texts[0], _ALONE) or texts[0]]
     if len(texts) == 1 and texts[0] in _ALONE:
-        return Term(Words("block", offset), _ALONE[texts[0]])
-    if texts[0] == "both":
-        texts = ["all", *texts[1:]]
+        bare = texts[0] in ("none", "all")
+        return Term(Words("block", offset), _ALONE[texts[0]], bare=bare)
     kind, least, most, used = _quantity(texts)
-    listed = False
+    listed, exact = False, None
     if used and used < len(texts) and texts[used] == "of":
+        if kind is Kind.COUNT and number_of(texts[0]) is not None:
+            # "put one of the red ones in stack 1": may more be there?
+            raise InvalidGoalError(
+                "say 'exactly' or 'at least' in front of the number", offset, whole.text
+            )
         used += 1
         listed = kind is Kind.COUNT and texts[-1] not in PLURALS
+        used += used < len(texts) and texts[used] == "all"
+    if kind is Kind.EVERY and used < len(texts):
+        exact = 2 if "both" in texts[:used] else number_of(texts[used])
+        if texts[used] == "both":
+            exact, used = 2, used + 1
+        elif exact is not None and "both" not in texts[:used]:
+            used += 1
     others = texts[0] == "another" or (
         used < len(texts) - 1 and texts[used] == "other" and kind is not Kind.THE
     )
@@ -177,13 +223,23 @@ def term_of(words: Sequence[Words]) -> Term:
     rest = texts[used:]
     if kind is Kind.THE and rest[-1] in PLURALS:
         kind = Kind.EVERY
-    if not rest:
+    bare = not rest
+    if bare:
         if kind is not Kind.COUNT or texts[0] in _SOME:
             raise InvalidGoalError("it is not said which block", offset, whole.text)
         rest = ["block"]
     start = words[used].offset if used < len(words) else offset
     name = Words(" ".join(PLURALS.get(text, text) for text in rest), start)
-    return Term(name, kind, least, most, others=others, listed=listed)
+    return Term(name, kind, least, most, others=others, listed=listed, exact=exact, bare=bare)
+
+
+def is_quantity(text: str) -> bool:
+    """Whether a word in front of a name says how many are meant."""
+    return (
+        text in _EVERY | _SOME | _NO | _BOUNDS.keys() | {"exactly"}
+        or number_of(text) is not None
+        or _RANGE.fullmatch(text) is not None
+    )
 
 
 def _quantity(texts: Sequence[str]) -> tuple[Kind, int, int | None, int]:
@@ -201,6 +257,8 @@ def _quantity(texts: Sequence[str]) -> tuple[Kind, int, int | None, int]:
     named = _BOUNDS.get(first)
     used = int(named is not None or first in ("exactly", "only"))
     if used < len(texts):
+        if bounds := _RANGE.fullmatch(texts[used]):
+            return Kind.COUNT, int(bounds[1]), int(bounds[2]), used + 1
         number = number_of(texts[used])
         if number is not None:
             low, high, more = named or (True, True, 0)
@@ -212,6 +270,12 @@ def _quantity(texts: Sequence[str]) -> tuple[Kind, int, int | None, int]:
 def number_of(text: str) -> int | None:
     """The number that a word is, in digits or in letters."""
     return int(text) if text.isdigit() else NUMBERS.get(text)
+
+
+def is_any_place(term: Term) -> bool:
+    """Whether it is "any stack"."""
+    some = term.kind is Kind.COUNT and (term.least, term.most) == (1, None)
+    return some and term.words.text in PLACE_NOUNS
 
 
 def _with_digits(text: str) -> str:

@@ -11,10 +11,10 @@ from scene_graph import ABOVE, BESIDE, LEFT, PREDICATES, UP, Phrase
 
 from ..errors import InvalidGoalError
 from .clauses import Said, no_relation
-from .language import ALL_OF, BOTH, DIFFERENT_PLACES, EACH_OTHER, IT, PLACE_NOUNS, SAME_PLACE
+from .language import ALL_OF, BOTH, DIFFERENT_PLACES, EACH_OTHER, IT, SAME_PLACE
 from .objections import check_places, unclear
 from .parsed import ParsedRelation, counted, in_one_place, none_but
-from .terms import Kind, Term, Words
+from .terms import Kind, Term, Words, is_any_place
 
 
 class Told:
@@ -38,14 +38,19 @@ class Told:
     def all_named(self, term: Term) -> list[Term]:
         """The blocks that "both" or "all three" stands for: those that were named, if so many."""
         number = ALL_OF.get(term.words.text, 2)
+        if term.bare:
+            number = max(2, len(self._named))  # "all in stack1"
         if len(self._named) != number:
             raise unclear(term)
         return list(self._named.values())
 
-    def meant(self, term: Term, phrase: Phrase | None, carried: bool = False) -> Term:
+    def meant(
+        self, term: Term, phrase: Phrase | None, carried: bool = False, again: bool = False
+    ) -> Term:
         """A name itself; for "it" the one that it can only stand for.
 
         Args:
+            again: it is the subject of a relation of the kind that was denied before.
             phrase: the relation whose object it is; None for a subject.
             carried: the relation's subject is that of the one before.
         """
@@ -55,8 +60,8 @@ class Told:
             return self.object  # "two in the left stack, and red at the bottom of it"
         subject = self.subjects[0] if len(self.subjects) == 1 else None
         found: Term | None = None
-        if self.object is None or self.object.is_place:
-            found = subject
+        if self.object is None or self.object.is_place or (again and self.link and self.link[1]):
+            found = subject  # "red not on blue, put it on green"
         elif phrase is not None and carried:
             found = self.object
         elif phrase == Phrase(PREDICATES[UP]) and self.link is not None:
@@ -109,6 +114,16 @@ class Told:
             # Of whom it was said is who is spoken of.
             self.subjects, self.object = list(objects[-1:]), None
 
+    def add_again(self, clause: Said) -> None:
+        """What was said last, of another: "and so should blue", "neither should blue"."""
+        assert clause.subject is not None
+        denied = self.link is not None and (
+            self.link[1] or any(one.kind is Kind.NO for one in self.subjects)
+        )
+        if self.link is None or self.object is None or denied == (clause.again == "so"):
+            raise no_relation(self._text, clause.words)
+        self.add([clause.subject], *self.link, self.object)
+
     def add_edge(self, subjects: Sequence[Term], clause: Said) -> None:
         """The relations of "red at the bottom", "red at the top of it"."""
         first = clause.words[0]
@@ -133,6 +148,13 @@ class Told:
         phrase = Phrase(PREDICATES[UP], inverse=not upwards)
         self.add([block], phrase, False, block.words, self.subjects[0])
         self.subjects = [block]
+
+    def _of_same_kind(self, term: Term) -> Term:
+        """A number alone with the kind of what was counted before: "two boxes here, one there"."""
+        before = self.subjects[0] if len(self.subjects) == 1 else None
+        if not term.bare or before is None or before.kind is Kind.THE or before.others:
+            return term
+        return replace(term, words=replace(before.words, offset=term.words.offset), bare=False)
 
     def _about_one_place(
         self, subjects: Sequence[Term], phrase: Phrase, denied: bool, object_: Term
@@ -167,16 +189,12 @@ class Told:
         counting = counted(subjects)
         if counting is None or object_.listed:
             raise unclear(object_ if object_.listed else subjects[0])
-        subjects = counting
+        subjects = [self._of_same_kind(term) for term in counting]
         if len(subjects) > 1 and subjects[-1].kind is Kind.NO and subjects[-1].others:
             # "red and nothing else in stack1"
             subjects = [replace(subject, only=True) for subject in subjects[:-1]]
         bounded = all(term.kind is Kind.COUNT and not term.least for term in subjects)
-        if (
-            object_.words.text in PLACE_NOUNS
-            and object_.kind is Kind.COUNT
-            and (bounded or all(term.kind is Kind.NO for term in subjects))
-        ):
+        if is_any_place(object_) and (bounded or all(term.kind is Kind.NO for term in subjects)):
             object_ = replace(object_, kind=Kind.EVERY)  # "at most two blocks in any stack"
         if only := [subject for subject in subjects if subject.only]:
             nothing_else = none_but(subjects, phrase, denied, object_)

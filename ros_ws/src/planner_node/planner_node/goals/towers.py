@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Towers whose blocks are told with their places in them: "red at the bottom, blue on top"."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from .language import MUTE, NEGATION, NOUN_VERBS, OPENINGS
+from .terms import Words
+
+#: Where in a tower, from the bottom; behind a name or in front of it.
+_LEVELS: Final = {
+    (preposition, *very, noun): level
+    for preposition in ("at", "on")
+    for very in ((), ("very",), ("its",))
+    for noun, level in (("bottom", 0), ("base", 0), ("top", 2), ("peak", 2))
+} | {
+    ("in", "middle"): 1, ("in", "between"): 1, ("between", "them"): 1, ("in", "between", "them"): 1,
+}  # fmt: skip
+_LONGEST: Final = max(map(len, _LEVELS))
+
+
+@dataclass(frozen=True)
+class _Block:
+    """A clause that names a block, and where it says that the block is."""
+
+    name: list[Words]
+    level: int | None
+
+
+def as_tower(clauses: list[list[Words]]) -> list[list[Words]]:
+    """ "in stack 0: red at the bottom, then blue, green on top" as "from bottom to top".
+
+    What is told before and behind stays as it is; so does what is no tower.
+    """
+    told = [_block(clause) for clause in clauses]
+    levelled = [index for index, block in enumerate(told) if block and block.level is not None]
+    if len(levelled) < 2:
+        return clauses
+    first, last = levelled[0], levelled[-1]
+    run = told[first : last + 1]
+    blocks = [block for block in run if block is not None]
+    heading, name = _heading_before(blocks[0].name)
+    if len(blocks) != len(run) or (heading and first):
+        return clauses
+    ordered = _from_bottom([_Block(name, blocks[0].level), *blocks[1:]])
+    if ordered is None:
+        return clauses
+    order = Words("bottom-to-top", name[0].offset, name[0].stop)
+    if first == 1 and not heading:
+        return [[*clauses[0], order], *ordered, *clauses[last + 1 :]]
+    return [*clauses[:first], [*heading, order], *ordered, *clauses[last + 1 :]]
+
+
+def _from_bottom(blocks: Sequence[_Block]) -> list[list[Words]] | None:
+    """The names from the bottom; None where it is not clear which is where."""
+    levels = [block.level for block in blocks]
+    names = [block.name for block in blocks]
+    if sorted(level for level in levels if level is not None) == [0, 1, 2] and len(levels) == 3:
+        return [names[levels.index(level)] for level in range(3)]
+    if any(level not in (None, 1) for level in levels[1:-1]) or levels.count(1) > 1:
+        return None
+    ends = (levels[0], levels[-1])
+    if ends == (0, 2):
+        return names
+    return names[::-1] if ends == (2, 0) else None
+
+
+def _block(clause: Sequence[Words]) -> _Block | None:
+    """A clause as a block and its level; None where it says something else."""
+    texts = tuple(item.text for item in clause)
+    if NEGATION in texts:
+        return None
+    for length in range(min(_LONGEST, len(texts) - 1), 0, -1):
+        if (level := _LEVELS.get(texts[-length:])) is not None:
+            return _Block(list(clause[:-length]), level)
+        if (level := _LEVELS.get(texts[:length])) is not None and texts[length] != "of":
+            name = list(clause[length:])
+            while len(name) > 1 and name[0].text in MUTE - NOUN_VERBS:
+                name.pop(0)
+            return _Block(name, level)
+    return _Block(list(clause), None)
+
+
+def _heading_before(words: list[Words]) -> tuple[list[Words], list[Words]]:
+    """What is before "with", and what is behind."""
+    for index, item in enumerate(words):
+        if item.text in OPENINGS and index:
+            return words[:index], words[index + 1 :]
+    return [], words
