@@ -20,6 +20,7 @@ from .language import (
     NOUN_VERBS,
     NOUNS,
     NUMBERS,
+    SAME_PLACE,
     TAKES,
     meant,
 )
@@ -38,13 +39,17 @@ _ANY: Final = {"anything": "nothing", "any": "no"}
 _SKIPPED: Final = MUTE | TAKES | {NEGATION}
 
 
+#: A phrase, whether it is negated, its object, and the words of the phrase.
+Link = tuple[Phrase, bool, Term, Words]
+
+
 @dataclass(frozen=True)
 class Said:
     """What one clause says; a name without a relation has no links.
 
     Attributes:
         subject: None where the clause leaves it out.
-        links: phrases, whether each is negated, the object of each, and the words of the phrase.
+        links: its relations, in their order.
         takes: it only says what to take, as in "take red and put it on blue".
         clears: it says of the name that nothing stands on it.
         order: the names that follow are a tower or a row, see ``ORDERS``; None: they are not.
@@ -57,7 +62,7 @@ class Said:
 
     words: Sequence[Words]
     subject: Term | None
-    links: tuple[tuple[Phrase, bool, Term, Words], ...] = ()
+    links: tuple[Link, ...] = ()
     takes: bool = False
     clears: bool = False
     order: tuple[str, bool] | None = None
@@ -108,6 +113,8 @@ def read_clause(text: str, words: list[Words]) -> Said:
     if wants := [index for index, item in enumerate(before) if item.text in _WANTS]:
         # Who wants it is nothing that is on the table: "my students want red on blue".
         before = before[wants[-1] + 1 :] or before
+    if before and before[0].text in ("no", "nothing", "none"):
+        before = [item for item in before if item.text not in ("allowed", "permitted")]
     if negated and before and before[0].offset < negated[0].offset < before[-1].offset:
         # "the boxes not red"
         raise InvalidGoalError("it is not clear what 'not' is said of", negated[0].offset, NEGATION)
@@ -186,7 +193,7 @@ def _names_a_place(rest: Sequence[Words]) -> bool:
 
 def _turned(words: Sequence[Words]) -> tuple[list[Words], list[Words]] | None:
     """Object and subject of "on OBJECT put SUBJECT": on either side of a verb."""
-    if not words:
+    if not words or " ".join(item.text for item in words[:2]) in SAME_PLACE:
         return None
     if words[0].text in IT and (named := [item for item in words[1:] if item.text not in MUTE]):
         return [words[0]], named  # "on that the red one"
@@ -225,6 +232,8 @@ def _without_ends(words: Sequence[Words]) -> list[Words]:
 
 def _without_phrase(text: str, words: list[Words]) -> Said:
     """A name, something to take, or something that is to be clear."""
+    if words[-1].text in ("there", "elsewhere") and (there := _there(words)):
+        return there
     taken = _taken(words)
     if taken:
         return Said(words, term_of(taken), takes=True)
@@ -243,13 +252,26 @@ def _without_phrase(text: str, words: list[Words]) -> Said:
     return Said(words, term_of(name), asks=bool(asks))
 
 
+def _there(words: Sequence[Words]) -> Said | None:
+    """ "blue must not be there", "blue elsewhere": in the place that was spoken of, or not."""
+    elsewhere = words[-1].text == "elsewhere"
+    named = [item for item in words[_verb_at_start(words) :] if item.text not in MUTE - NOUN_VERBS]
+    denied = [item for item in named if item.text == NEGATION]
+    named = [item for item in named if item.text not in (NEGATION, "elsewhere")]
+    if not named or len(denied) + elsewhere > 1:
+        return None
+    there = Words("it", words[-1].offset, words[-1].stop)
+    link = (PREDICATES.phrases["in",], bool(denied) or elsewhere, Term(there), words[-1])
+    return Said(words, term_of(named), (link,))
+
+
 def _tower(text: str, words: Sequence[Words], order: Words) -> Said:
     """The heading of a tower, "from bottom to top in stack 1", and the first name behind it."""
     rest = [
         item for item in words if item is not order and item.text not in HEADING | MUTE - NOUN_VERBS
     ]
     found = list(find(rest, PREDICATES.phrases))
-    links: tuple[tuple[Phrase, bool, Term, Words], ...] = ()
+    links: tuple[Link, ...] = ()
     if len(found) == 1:
         # A place; behind it there may be the first name.
         behind = rest[found[0].last :]
@@ -260,6 +282,10 @@ def _tower(text: str, words: Sequence[Words], order: Words) -> Said:
         rest = [*rest[: found[0].first], *behind[len(place) :]]
     elif found:
         raise no_relation(text, words)
+    elif stop := next((last for last in (2, 1) if _is_place(rest[:last])), 0):
+        # "column 1 from bottom to top"
+        phrase = PREDICATES.phrases["in",]
+        links, rest = ((phrase, False, term_of(rest[:stop]), order),), rest[stop:]
     subject = term_of(rest) if rest else None
     return Said(words, subject, links, order=ORDERS[order.text])
 

@@ -38,12 +38,12 @@ MUTE: Final = VERBS | {
     "plz", "pleas", "was", "secondly", "thirdly", "lastly", "together", "instead", "itself",
     "themselves", "ask", "trouble", "think", "guess", "suppose", "see", "check", "confirm",
     "verify", "am", "er", "erm", "um", "uh", "uhm", "really", "certain", "kind", "enough", "asap",
-    "quick", "slowly", "careful", "been", "being", "found", "end", "kept",
+    "quick", "pray", "needing", "slowly", "careful", "been", "being", "found", "end", "kept",
     "stood", "sat", "put", "seen", "cheers", "appreciate", "good", "grateful",
     "possible",
 }  # fmt: skip
 #: Join relations as a comma does.
-JOINS: Final = frozenset({"and", "adn", "then", "but", "while", "plus", "&"})
+JOINS: Final = frozenset({"and", "adn", "then", "but", "while", "plus", "&", "though", "although", "yet"})
 #: Begin a relation after words that name nothing: "build a tower with red on blue".
 OPENINGS: Final = frozenset({"with", "where", "whereby"})
 #: Polite on its own: a part of a goal of nothing else says nothing.
@@ -54,7 +54,7 @@ POLITE: Final = frozenset({
     "cheers", "greetings", "yours", "sincerely", "faithfully", "regards", "best", "bye", "goodbye",
     "obliged", "appreciated", "welcome", "madam", "friend", "buddy", "mate", "ta", "ever", "thank",
     "again", "there", "asap", "quick", "quickly", "carefully", "gently", "slowly", "careful",
-    "everyone", "yes", "yeah", "yep", "very", "much", "advance", "time",
+    "everyone", "pray", "yes", "yeah", "yep", "very", "much", "advance", "time",
 })  # fmt: skip
 #: Words of a heading, as in "the goal for my class: red on blue"; all else before a colon counts.
 HEADING: Final = frozenset({
@@ -112,6 +112,9 @@ SHORT_NEGATIONS: Final = {
 STEPS: Final = frozenset({"second", "third", "fourth", "fifth", "last"})
 #: Say of a place how many blocks are in it, of a block what is on it.
 HOLDS: Final = frozenset({"have", "has", "contain", "contains", "hold", "holds"})
+
+#: Say of a block what is on it.
+CARRIES: Final = frozenset({"carry", "carries", "bear", "bears", "support"})
 
 #: Fit every object.
 NOUNS: Final = frozenset({

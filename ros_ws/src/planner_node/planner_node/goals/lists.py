@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from .clauses import Said
+from .clauses import Link, Said
 from .language import BOTH, IT, MUTE, TAKES
 
 _INSIDE: Final = frozenset({"in", "on", "at"})
@@ -45,6 +45,14 @@ def is_listed(following: Sequence[Said]) -> bool:
             verb = clause.words[0].text in MUTE | TAKES
             return not verb and clause.subject.words.text not in IT | BOTH
     return False
+
+
+def place_of(clause: Said) -> Link | None:
+    """The link of a clause that says of nobody but the row before it where it stands."""
+    if clause.subject is not None or len(clause.links) != 1:
+        return None
+    _, denied, place, _ = clause.links[0]
+    return clause.links[0] if place.is_place and not denied else None
 
 
 def row_before(said: Sequence[Said], heading: Said) -> tuple[list[Said], Said, list[Said]]:

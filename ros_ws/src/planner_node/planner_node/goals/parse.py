@@ -19,7 +19,7 @@ from scene_graph import PREDICATES, UP, Phrase
 from ..errors import InvalidGoalError
 from .clauses import EXAMPLE, Said, no_relation, read_clause
 from .language import ALL_OF, BOTH, IT
-from .lists import is_listed, row_before, row_of, turned_at_comma
+from .lists import is_listed, place_of, row_before, row_of, turned_at_comma
 from .objections import unclear, untold
 from .parsed import ParsedRelation
 from .sentences import is_heading, sentences
@@ -68,6 +68,8 @@ class _Reader:
                 names, rest = row_of(said[number + 1 :])
                 if not names:
                     before, clause, names = row_before(before, clause)
+                if rest and (standing := place_of(rest[0])):
+                    clause, rest = replace(clause, links=(*clause.links, standing)), rest[1:]
                 self._read_row(clause, clause.order, names)
                 said = [*before, *rest]
                 break
@@ -91,7 +93,10 @@ class _Reader:
             if clause.clears:
                 assert clause.subject is not None
                 subjects, waiting, last = [clause.subject], [], clause
-                for term in (*named, clause.subject):
+                spoken = [*named, clause.subject]
+                if clause.subject.words.text in BOTH or clause.subject.bare:
+                    spoken = named or self._told.all_named(clause.subject)
+                for term in spoken:
                     self._told.clear(self._told.meant(term, None))
                 self._told.subjects, self._told.object = subjects, None
                 continue

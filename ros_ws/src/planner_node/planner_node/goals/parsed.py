@@ -67,11 +67,7 @@ def none_but(
     """That nothing but the subjects has a relation: "only red in stack1"; None: it is not clear."""
     if denied or any(term.kind is not Kind.THE for term in subjects) or not object_.is_place:
         return None
-    others = Term(
-        Words("block", subjects[0].words.offset),
-        Kind.EVERY,
-        but=tuple(subject.words for subject in subjects),
-    )
+    others = Term(Words("block", subjects[0].words.offset), Kind.EVERY, but=tuple(subjects))
     if phrase.predicate.name == UP:
         phrase = Phrase(PREDICATES[ABOVE])  # "only red on stack1"
     return ParsedRelation(others, phrase, object_, negated=True)

@@ -54,15 +54,15 @@ def without_slip(word: str) -> str:
 
     Another letter in its place is no slip: that makes other words of it.
     """
-    if len(word) < 4 or word in _NO_SLIP or not word.isalpha():
+    if len(word) < 3 or word in _NO_SLIP or not word.isalpha():
         return word
     slips = {word[:at] + word[at + 1] + word[at] + word[at + 2 :] for at in range(len(word) - 1)}
-    found = slips & _COMMON
+    found = slips & (_COMMON if len(word) > 3 else NUMBERS.keys())
     if not found and len(word) >= 5:
         found = {
             word[:at] + word[at + 1 :] for at in range(1, len(word)) if word[at] == word[at - 1]
         } & _COMMON
-    if not found and len(word) >= 5:
+    if not found and len(word) >= 4:
         found = {
             known
             for known in _COMMON

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from .language import NUMBERS, PLACE_NOUNS, PLURALS, SIDES, meant
+from .language import PLACE_NOUNS, PLURALS, SIDES, meant
 from .terms import Words, number_of
 
 _ORDINALS: Final = {
@@ -34,9 +34,11 @@ def _beside(
 ) -> tuple[list[Words], int] | None:
     """ "left stack" as the name of a place; in "left stack 1", left is a relation."""
     at = int(texts[0] in _FURTHEST)
-    if at >= len(texts) or (side := SIDES.get(texts[at])) is None:
-        return None
     behind = texts[at + 1 : at + 3]
+    known = SIDES.keys() if behind[:1] and behind[0] in PLACE_NOUNS else ()
+    side = SIDES.get(meant(texts[at], known) or texts[at]) if at < len(texts) else None
+    if side is None:
+        return None
     noun = bool(behind) and (meant(behind[0], PLACE_NOUNS, SIDES) or "") in PLACE_NOUNS
     # "in the leftmost one", "in the far left", "all the way to the right" name places too.
     furthest = at > 0 or texts[at].endswith("most")
@@ -94,13 +96,3 @@ def _several(words: Sequence[Words]) -> tuple[list[Words], int] | None:
         else:
             return (found, used) if len(found) > 1 else None
     return (found, used - 1) if len(found) > 1 else None
-
-
-def is_ordinal(text: str) -> bool:
-    """Whether it is "first", "2nd" and so on."""
-    return text in _ORDINALS
-
-
-def ends_a_number(text: str) -> bool:
-    """Whether a number in front of it counts something: "place 3 blocks"."""
-    return text in _COUNTED or text in NUMBERS

@@ -22,6 +22,8 @@ _ENDS: Final = {
     "top": "top", "topmost": "top", "uppermost": "top", "highest": "top", "bottom": "bottom",
     "lowest": "bottom", "bottommost": "bottom", "base": "bottom",
 }  # fmt: skip
+_NEIGHBOURS: Final = frozenset({"adjacent", "neighbours", "neighbors", "neighbouring"})
+_SIDE_BY_SIDE: Final = ("next", "to", "each-other")
 _JUST: Final = {"just-left-of": "left", "just-right-of": "right"}
 
 
@@ -61,6 +63,9 @@ def plainer(words: Sequence[Words]) -> Plain | None:
         return Plain(told)
     if told := _edge_of_place(words):
         return Plain(told[0], edge=told[1])
+    if texts[-1] in _NEIGHBOURS and len(texts) > 1:
+        end = words[-1]
+        return Plain([*words[:-1], *(Words(text, end.offset, end.stop) for text in _SIDE_BY_SIDE)])
     if texts[-1] == "either" and len(words) > 1:
         return Plain(list(words[:-1]))
     for ending in _EDGES:

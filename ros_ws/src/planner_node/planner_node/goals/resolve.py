@@ -89,7 +89,7 @@ def _resolve_term(term: Term, names: Sequence[str], stack_count: int | None) -> 
         return tuple(base_name(index) for index in range(stack_count))
     if term.among:
         return tuple(resolve_name(words, names, stack_count) for words in term.among)
-    left_out = {resolve_name(words, names, stack_count) for words in term.but}
+    left_out = {name for one in term.but for name in _resolve_term(one, names, stack_count)}
     found = tuple(name for name in _fitting(term.words, names, stack_count) if name not in left_out)
     if term.exact is not None and len(found) != term.exact:
         raise AmbiguousObjectError(
@@ -231,7 +231,10 @@ def _mended(parts: Sequence[str], known: set[str]) -> list[str]:
     In front there may be a verb, behind a "should" or "please", typed wrong; in between nothing is
     left out.
     """
-    right = [meant(part, known | NOUNS | SYNONYMS.keys(), _RIGHT) for part in parts]
+    right = [
+        meant(part, known | NOUNS | SYNONYMS.keys(), _RIGHT) or _shortened(part, known)
+        for part in parts
+    ]
     first, last = 0, len(parts)
     while first < last and right[first] is None and meant(parts[first], _LEFT_OUT, _RIGHT):
         first += 1
@@ -241,6 +244,12 @@ def _mended(parts: Sequence[str], known: set[str]) -> list[str]:
         last -= 1
     kept = [word or part for word, part in zip(right[first:last], parts[first:last])]
     return [one for part in kept for one in _apart(part, known)]
+
+
+def _shortened(part: str, known: set[str]) -> str | None:
+    """The one word that begins so: "yel" for "yellow"."""
+    found = [word for word in known if word.startswith(part)]
+    return found[0] if len(found) == 1 and len(part) > 2 and part not in _RIGHT else None
 
 
 def _apart(part: str, known: set[str]) -> list[str]:

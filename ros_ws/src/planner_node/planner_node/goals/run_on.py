@@ -8,7 +8,7 @@ from typing import Final
 
 from scene_graph import COLORS, PREDICATES, SHAPES
 
-from .language import HOLDS, MUTE, NOUN_VERBS, NOUNS, PLURALS, SYNONYMS, TAKES
+from .language import HEADING, HOLDS, MUTE, NOUN_VERBS, NOUNS, PLURALS, SYNONYMS, TAKES
 from .orders import ORDERS
 from .phrases import RIGHT_WORDS, find
 from .terms import Words, is_quantity
@@ -28,6 +28,9 @@ def told_apart(clause: list[Words]) -> Iterator[list[Words]]:
     found = list(find(clause, PREDICATES.phrases))
     ordered = any(item.text in ORDERS for item in clause)
     ends = [*((item.first, item.last) for item in found), (len(clause), len(clause))]
+    if not found and (inside := _in_place(clause)):
+        yield inside
+        return
     start, done = 0, 0
     for number, (last, behind) in enumerate(ends):
         names = _names(clause, start, last)
@@ -44,6 +47,19 @@ def told_apart(clause: list[Words]) -> Iterator[list[Words]]:
     yield clause[done:]
 
 
+def _in_place(clause: list[Words]) -> list[Words] | None:
+    """ "red stack 1" as "red in stack 1"; None for all else."""
+    names = _names(clause, 0, len(clause))
+    if len(names) != 2:
+        return None
+    parts = [clause[first:last] for first, last in names]
+    places = [Words(" ".join(item.text for item in part), 0).is_place for part in parts]
+    if sum(places) != 1:
+        return None
+    place, name = parts if places[0] else reversed(parts)
+    return [*name, Words("in", place[0].offset, place[0].offset), *place]
+
+
 def _names(clause: Sequence[Words], start: int, last: int) -> list[tuple[int, int]]:
     """Where the names among some words start and end; none where there are other words."""
     result: list[tuple[int, int]] = []
@@ -52,7 +68,10 @@ def _names(clause: Sequence[Words], start: int, last: int) -> list[tuple[int, in
         if used := _name(clause[index:last]):
             result.append((index, index + used))
             index += used
-        elif clause[index].text in _MEANS_NOTHING | ORDERS.keys():
+        elif clause[index].text in _MEANS_NOTHING | ORDERS.keys() or (
+            any(item.text in ORDERS for item in clause[index:last])
+            and clause[index].text in HEADING - {"one", "this"}
+        ):
             index += 1
         else:
             return []

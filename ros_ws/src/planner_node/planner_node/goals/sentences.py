@@ -29,6 +29,7 @@ from .terms import Words
 from .tokens import parts_of
 from .towers import as_tower
 
+_BEFORE_OPENING: Final = (MUTE | HEADING) - {"this", "one", "two", "them"}
 _DENYING: Final = frozenset({NEGATION, "nothing", "none"})
 #: Say that a tower is what the heading before is about.
 _OF_TOWERS: Final = ORDERS.keys() | {"on", "upon", "top", "bottom", "base"}
@@ -143,9 +144,12 @@ def _split(clauses: Sequence[list[Words]]) -> Iterator[list[Words]]:
     for clause in clauses:
         part: list[Words] = []
         for item in clause:
-            if item.text in OPENINGS and all(word.text in MUTE for word in part):
+            if item.text in OPENINGS and all(word.text in _BEFORE_OPENING for word in part):
                 # What is before is no relation, and none is missing.
                 part = []
+            elif item.text == "and" and _leaves_out(part):
+                # "all but red and blue in stack 1"
+                part.append(Words(EXCEPT, item.offset, item.stop))
             elif item.text not in JOINS and not (item.text in OPENINGS and _has_phrase(part)):
                 part.append(item)
             else:
@@ -154,6 +158,11 @@ def _split(clauses: Sequence[list[Words]]) -> Iterator[list[Words]]:
                 part = []
         if part and not _says_nothing(part):
             yield part
+
+
+def _leaves_out(part: Sequence[Words]) -> bool:
+    """Whether it says who is left out, and not yet of what."""
+    return any(item.text == EXCEPT for item in part) and not _has_phrase(part)
 
 
 def _split_negation(clause: list[Words], denied: bool) -> Iterator[list[Words]]:
@@ -201,6 +210,8 @@ def _split_negation(clause: list[Words], denied: bool) -> Iterator[list[Words]]:
 def is_heading(words: Sequence[Words]) -> bool:
     """Whether it only says that a goal follows: "the goal for my class", "build a tower"."""
     known = HEADING | MUTE
+    if len(words) > 1 and words[0].text in known:
+        words = [item for item in words if not item.text.isdigit()]  # "step 2"
     exact = [item.text in known for item in words]
     if len(words) > 1 and any(exact):
         exact = [meant(item.text, known, RIGHT_WORDS) is not None for item in words]

@@ -97,7 +97,7 @@ class Term:
     kind: Kind = Kind.THE
     least: int = 1
     most: int | None = None
-    but: tuple[Words, ...] = ()
+    but: tuple[Term, ...] = ()
     others: bool = False
     only: bool = False
     listed: bool = False
@@ -155,12 +155,16 @@ def term_of(words: Sequence[Words]) -> Term:
     if whole.is_place or whole.text in BOTH:
         return Term(whole)
     if EXCEPT in texts[1:-1]:
-        at = texts.index(EXCEPT)
-        every = term_of(words[:at])
-        if every.kind is Kind.EVERY and not every.but:
-            return replace(every, but=(term_of(words[at + 1 :]).words,))
+        at = len(texts) - 1 - texts[::-1].index(EXCEPT)
+        every, other = term_of(words[:at]), term_of(words[at + 1 :])
+        if every.kind is Kind.EVERY and other.kind in (Kind.THE, Kind.EVERY):
+            return replace(every, but=(*every.but, other))
     if whole.text in OTHERS:
         return Term(Words("block", offset), Kind.EVERY, others=True)
+    if whole.text == "all of them":
+        return Term(Words("block", offset), Kind.EVERY, bare=True)
+    if texts[0] == "other":
+        return _other(words)
     if texts[:2] == ["all", "other"]:
         return replace(term_of([words[0], *words[2:]]), others=True)
     if whole.text in NOTHING_ELSE:
@@ -173,6 +177,22 @@ def term_of(words: Sequence[Words]) -> Term:
     if only is not None:
         return only
     return _quantified(words, whole)
+
+
+def _other(words: Sequence[Words]) -> Term:
+    """ "the other", "the other three", "the other red one": those that were not named yet."""
+    offset = words[0].offset
+    texts = [item.text for item in words[1:]]
+    number = number_of(texts[0]) if texts and texts[0] != "one" else None
+    if not texts or texts == ["one"] or number is not None:
+        most = 1 if number is None else number
+        if len(texts) > 1 and not (len(texts) == 2 and texts[1] in PLURALS):
+            raise InvalidGoalError("it is not clear which these are", offset, " ".join(texts))
+        return Term(Words("other", offset), Kind.COUNT, most, most, others=True, bare=True)
+    rest = term_of(words[1:])
+    if rest.kind is not Kind.THE:
+        return replace(rest, others=True)
+    return replace(rest, kind=Kind.EVERY, others=True, exact=1)
 
 
 def _only(words: Sequence[Words], whole: Words) -> Term | None:

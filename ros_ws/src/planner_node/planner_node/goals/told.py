@@ -32,6 +32,8 @@ class Told:
         self.subjects: list[Term] = []
         self.object: Term | None = None
         self.link: tuple[Phrase, bool, Words] | None = None
+        #: The subjects of a relation that was told of its object.
+        self._of_object: list[Term] = []
         #: All blocks that were named, by their words.
         self._named: dict[str, Term] = {}
 
@@ -62,7 +64,7 @@ class Told:
         found: Term | None = None
         if self.object is None or self.object.is_place or (again and self.link and self.link[1]):
             found = subject  # "red not on blue, put it on green"
-        elif phrase is not None and carried:
+        elif phrase is not None and (carried or self._opposite(phrase)):
             found = self.object
         elif phrase == Phrase(PREDICATES[UP]) and self.link is not None:
             # On what already carries a block nothing else can be put.
@@ -71,6 +73,11 @@ class Told:
         if found is None or found.kind is not Kind.THE:
             raise unclear(term)
         return found
+
+    def _opposite(self, phrase: Phrase) -> bool:
+        """Whether it is "right of" behind "left of": "red left of blue and green right of it"."""
+        before = self.link[0] if self.link is not None else phrase
+        return before.predicate == phrase.predicate and before.inverse != phrase.inverse
 
     def clear(self, term: Term) -> None:
         """Adds that nothing stands on it."""
@@ -94,6 +101,8 @@ class Told:
         carried = clause.subject is None
         for phrase, denied, object_, written in links:
             if object_.words.text in EACH_OTHER:
+                if len(subjects) == 1 and subjects[0].exact == 2:
+                    subjects = [subjects[0], subjects[0]]  # "the two red ones next to each other"
                 if len(subjects) != 2 or phrase.predicate.name != BESIDE:
                     raise unclear(object_)
                 subjects, objects = subjects[:1], subjects[1:]
@@ -112,17 +121,22 @@ class Told:
             subjects, carried = objects[-1:], False
         if clause.of_object and not objects[-1].is_place:
             # Of whom it was said is who is spoken of.
+            self._of_object = self.subjects
             self.subjects, self.object = list(objects[-1:]), None
 
     def add_again(self, clause: Said) -> None:
         """What was said last, of another: "and so should blue", "neither should blue"."""
         assert clause.subject is not None
+        told_of = self.subjects if self.object is not None else self._of_object
         denied = self.link is not None and (
-            self.link[1] or any(one.kind is Kind.NO for one in self.subjects)
+            self.link[1] or any(one.kind is Kind.NO for one in told_of)
         )
-        if self.link is None or self.object is None or denied == (clause.again == "so"):
+        if self.link is None or denied == (clause.again == "so"):
             raise no_relation(self._text, clause.words)
-        self.add([clause.subject], *self.link, self.object)
+        if self.object is not None:
+            self.add([clause.subject], *self.link, self.object)
+        else:
+            self.add(self._of_object, *self.link, clause.subject)  # "red has nothing on it"
 
     def add_edge(self, subjects: Sequence[Term], clause: Said) -> None:
         """The relations of "red at the bottom", "red at the top of it"."""
@@ -152,6 +166,12 @@ class Told:
     def _of_same_kind(self, term: Term) -> Term:
         """A number alone with the kind of what was counted before: "two boxes here, one there"."""
         before = self.subjects[0] if len(self.subjects) == 1 else None
+        if term.bare and term.others:
+            # "one red block here and the other there": there are no more of them than these.
+            if before is None or before.kind is not Kind.COUNT or before.most != before.least:
+                raise unclear(term)
+            exact = before.least + term.least
+            return replace(term, words=before.words, others=False, bare=False, exact=exact)
         if not term.bare or before is None or before.kind is Kind.THE or before.others:
             return term
         return replace(term, words=replace(before.words, offset=term.words.offset), bare=False)
@@ -212,7 +232,7 @@ class Told:
                     # Who else was named may be meant as well.
                     raise unclear(subject)
                 subject = replace(
-                    subject, others=False, but=tuple(term.words for term in self._named.values())
+                    subject, others=False, but=tuple(self._named.values())
                 )
             for term in (subject, object_):
                 if term.words.text in IT:

@@ -7,7 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from scene_graph import PREDICATES
+
 from .language import MUTE, NEGATION, NOUN_VERBS, OPENINGS
+from .phrases import find
 from .terms import Words
 
 #: Where in a tower, from the bottom; behind a name or in front of it.
@@ -37,9 +40,13 @@ def as_tower(clauses: list[list[Words]]) -> list[list[Words]]:
     """
     told = [_block(clause) for clause in clauses]
     levelled = [index for index, block in enumerate(told) if block and block.level is not None]
-    if len(levelled) < 2:
+    if not levelled:
         return clauses
     first, last = levelled[0], levelled[-1]
+    if first == last:
+        last = _last_listed(clauses, first)
+    if first == last:
+        return clauses
     run = told[first : last + 1]
     blocks = [block for block in run if block is not None]
     heading, name = _heading_before(blocks[0].name)
@@ -49,6 +56,10 @@ def as_tower(clauses: list[list[Words]]) -> list[list[Words]]:
     if ordered is None:
         return clauses
     order = Words("bottom-to-top", name[0].offset, name[0].stop)
+    behind = clauses[last + 1 : last + 2]
+    if behind and len(behind[0]) > 2 and behind[0][0].text in ("all", "both"):
+        # "…, all in stack 1" says where the bottom stands.
+        heading, last = [*heading, *behind[0][1:]], last + 1
     if first == 1 and not heading:
         return [[*clauses[0], order], *ordered, *clauses[last + 1 :]]
     return [*clauses[:first], [*heading, order], *ordered, *clauses[last + 1 :]]
@@ -63,9 +74,21 @@ def _from_bottom(blocks: Sequence[_Block]) -> list[list[Words]] | None:
     if any(level not in (None, 1) for level in levels[1:-1]) or levels.count(1) > 1:
         return None
     ends = (levels[0], levels[-1])
-    if ends == (0, 2):
+    if ends in ((0, 2), (0, None)):
         return names
-    return names[::-1] if ends == (2, 0) else None
+    return names[::-1] if ends in ((2, 0), (2, None)) else None
+
+
+def _last_listed(clauses: Sequence[Sequence[Words]], first: int) -> int:
+    """The last of the names alone behind "red at the bottom"; ``first`` where none is.
+
+    What comes behind them has no name of its own, so that they belong to nothing else.
+    """
+    last = first
+    while last + 1 < len(clauses) and not list(find(clauses[last + 1], PREDICATES.phrases)):
+        last += 1
+    behind = clauses[last + 1 : last + 2]
+    return last if not behind or behind[0][0].text in ("all", "in", "on") else first
 
 
 def _block(clause: Sequence[Words]) -> _Block | None:
