@@ -16,12 +16,13 @@ from .terms import Words
 _FRAME: Final = POLITE | {
     "i", "we", "you", "it", "would", "could", "should", "may", "might", "must", "can", "will",
     "is", "be", "am", "are", "was", "make", "makes", "made", "see", "ensure", "check", "confirm",
-    "verify", "like", "love", "prefer", "want", "wish", "need", "think", "guess", "hope", "suppose",
-    "appreciate", "grateful", "glad", "happy", "pleased", "delighted", "nice", "great", "lovely",
-    "cool", "perfect", "wonderful", "fine", "kind", "enough", "possible", "important", "necessary",
-    "essential", "required", "most", "very", "really", "much", "also", "just", "then", "to", "do",
-    "me", "us", "my", "ask", "trouble", "mind", "bother", "too", "certain", "such", "as", "by",
-    "this", "that", "if", "out", "and", "arrange",
+    "verify", "like", "love", "prefer", "want", "wish", "need", "think", "guess", "hope",
+    "suppose", "appreciate", "grateful", "glad", "happy", "pleased", "delighted", "nice", "great",
+    "lovely", "cool", "perfect", "wonderful", "fine", "kind", "enough", "possible", "important",
+    "necessary", "essential", "required", "most", "very", "really", "much", "also", "just",
+    "then", "to", "do", "me", "us", "my", "ask", "trouble", "mind", "bother", "too", "certain",
+    "such", "as", "by", "this", "that", "if", "out", "and", "arrange", "suggest", "request",
+    "permission", "with", "your", "rather", "sorry", "please", "wonder", "wondering", "asking",
 }  # fmt: skip
 #: May follow "if" where it is no condition: "if you can", "if it is not too much trouble".
 _IF: Final = frozenset({
@@ -68,4 +69,3 @@ def says_nothing(words: Sequence[Words]) -> bool:
         return True
     spoken = (POLITE | {"you", "i", "we", "that", "would", "is"}) & set(texts)
     return bool(spoken) and all(text in _FRAME for text in texts)
-

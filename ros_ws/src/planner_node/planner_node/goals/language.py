@@ -17,7 +17,8 @@ NOUN_VERBS: Final = frozenset({"place", "stack", "position"})
 VERBS: Final = NOUN_VERBS | {
     "put", "move", "set", "get", "bring", "lay", "drop", "leave", "keep", "shift", "push",
     "slide", "transfer", "arrange", "build", "rest", "balance", "sit", "make", "let", "have",
-    "relocate", "stick", "add", "remove", "load", "deposit", "carry", "placing", "putting", "moving", "stacking",
+    "relocate", "stick", "add", "pop", "plop", "plonk", "chuck", "dump", "shove", "hoist",
+    "remove", "load", "deposit", "carry", "placing", "putting", "moving", "stacking",
 }  # fmt: skip
 #: Pick something up that the next clause calls "it".
 TAKES: Final = frozenset({"take", "grab", "lift", "pick", "fetch", "grasp", "get", "use"})
@@ -25,36 +26,41 @@ TAKES: Final = frozenset({"take", "grab", "lift", "pick", "fetch", "grasp", "get
 CLEAR: Final = frozenset({"clear", "empty", "free", "bare", "vacant", "unoccupied", "uncovered"})
 #: Mean nothing for the goal wherever they stand.
 MUTE: Final = VERBS | {
-    "is", "are", "be", "being", "stays", "stay", "sits", "sitting", "stands", "stand",
-    "standing", "rests", "resting", "goes", "go", "going", "lies", "lie", "lying", "placed",
-    "moved", "stacked", "located", "positioned", "should", "shall", "must", "has", "needs",
-    "need", "ought", "would", "will", "wants", "want", "come", "comes", "belongs", "belong",
-    "ends", "gets", "please", "kindly", "i", "we", "you", "me", "us", "like", "love", "prefer",
-    "now", "first", "finally", "also", "just", "simply", "so", "that", "there", "hey", "hi",
-    "hello", "robot", "ok", "okay", "thanks", "thx", "sure", "ensure", "were", "still", "again",
-    "too", "nice", "great", "your", "task", "goal", "next", "could", "wish", "maybe", "perhaps",
+    "is", "are", "be", "being", "stays", "stay", "sits", "sitting", "stands", "stand", "standing",
+    "rests", "resting", "goes", "go", "going", "lies", "lie", "lying", "placed", "moved",
+    "stacked", "located", "positioned", "should", "shall", "must", "has", "needs", "need",
+    "ought", "would", "will", "wants", "want", "come", "comes", "belongs", "belong", "ends",
+    "gets", "please", "kindly", "i", "we", "you", "me", "us", "like", "love", "prefer", "now",
+    "first", "finally", "also", "just", "simply", "so", "that", "there", "hey", "hi", "hello",
+    "robot", "ok", "okay", "thanks", "thx", "sure", "ensure", "were", "still", "again", "too",
+    "nice", "great", "your", "task", "goal", "next", "could", "wish", "maybe", "perhaps",
     "somewhere", "sir", "dear", "afterwards", "after", "quickly", "carefully", "gently", "do",
-    "does", "did", "try", "may", "might", "well", "as", "down", "anywhere", "today", "pls",
-    "plz", "pleas", "was", "secondly", "thirdly", "lastly", "together", "instead", "itself",
+    "does", "did", "try", "may", "might", "well", "as", "down", "anywhere", "today", "pls", "plz",
+    "pleas", "was", "secondly", "thirdly", "lastly", "together", "instead", "itself",
     "themselves", "ask", "trouble", "think", "guess", "suppose", "see", "check", "confirm",
     "verify", "am", "er", "erm", "um", "uh", "uhm", "really", "certain", "kind", "enough", "asap",
-    "quick", "pray", "needing", "slowly", "careful", "been", "being", "found", "end", "kept",
-    "stood", "sat", "put", "seen", "cheers", "appreciate", "good", "grateful",
-    "possible",
+    "quick", "pray", "suggest", "request", "strictly", "basically", "literally", "definitely",
+    "absolutely", "always", "completely", "totally", "ideally", "actual", "needing", "slowly",
+    "careful", "been", "found", "end", "kept", "stood", "sat", "put", "seen", "cheers",
+    "appreciate", "good", "grateful", "possible",
 }  # fmt: skip
 #: Join relations as a comma does.
-JOINS: Final = frozenset({"and", "adn", "then", "but", "while", "plus", "&", "though", "although", "yet"})
+JOINS: Final = frozenset(
+    {"and", "adn", "then", "but", "while", "plus", "&", "though", "although", "yet"}
+)
 #: Begin a relation after words that name nothing: "build a tower with red on blue".
 OPENINGS: Final = frozenset({"with", "where", "whereby"})
 #: Polite on its own: a part of a goal of nothing else says nothing.
 POLITE: Final = frozenset({
     "please", "kindly", "hey", "hi", "hello", "robot", "ok", "okay", "thanks", "thx", "dear",
-    "sir", "now", "sure", "so", "well", "pleas", "plz", "pls", "hmm", "hm", "um", "uh", "oh", "ah",
-    "uhm", "er", "erm", "alright", "right", "good", "morning", "afternoon", "evening", "day",
-    "cheers", "greetings", "yours", "sincerely", "faithfully", "regards", "best", "bye", "goodbye",
-    "obliged", "appreciated", "welcome", "madam", "friend", "buddy", "mate", "ta", "ever", "thank",
-    "again", "there", "asap", "quick", "quickly", "carefully", "gently", "slowly", "careful",
-    "everyone", "pray", "yes", "yeah", "yep", "very", "much", "advance", "time",
+    "sir", "now", "sure", "so", "well", "pleas", "plz", "pls", "hmm", "hm", "um", "uh", "oh",
+    "ah", "uhm", "er", "erm", "alright", "right", "good", "morning", "afternoon", "evening",
+    "day", "cheers", "greetings", "yours", "sincerely", "faithfully", "regards", "best", "bye",
+    "goodbye", "obliged", "appreciated", "welcome", "madam", "friend", "buddy", "mate", "ta",
+    "ever", "thank", "again", "there", "asap", "quick", "quickly", "carefully", "gently",
+    "slowly", "careful", "everyone", "pray", "love", "sweetheart", "darling", "honey", "monsieur",
+    "mister", "miss", "boss", "pal", "dude", "guys", "folks", "professor", "doctor", "pardon",
+    "excuse", "many", "yes", "yeah", "yep", "very", "much", "advance", "time",
 })  # fmt: skip
 #: Words of a heading, as in "the goal for my class: red on blue"; all else before a colon counts.
 HEADING: Final = frozenset({
@@ -82,9 +88,7 @@ CORRECTION: Final = "correction"
 #: Takes back what was said last; what follows is new.
 TAKEN_BACK: Final = "taken-back"
 #: The two or three blocks that were named before.
-BOTH: Final = frozenset({
-    "both", "they", "them", "these", "all three", "all four", "either-of-them",
-})  # fmt: skip
+BOTH: Final = frozenset({"both", "they", "them", "these", "either-of-them"})
 #: The block that was named before.
 IT: Final = frozenset({"it", "this", "that", "him", "her"})
 EACH_OTHER: Final = frozenset({"each-other"})
@@ -92,21 +96,20 @@ _PLACES: Final = ("stack", "tower", "place", "pile", "column")
 #: "in the same stack", "in different stacks"; a plural comes without its s.
 SAME_PLACE: Final = frozenset(f"same {place}" for place in _PLACES)
 DIFFERENT_PLACES: Final = frozenset(
-    f"{word} {place}" for word in ("different", "separate") for place in _PLACES
+    f"{word} {place}" for word in ("different", "separate", "distinct") for place in _PLACES
 )
 #: Behind a name and before a relation, looked for there with typos too.
 MODALS: Final = frozenset({
     "should", "shall", "must", "would", "stands", "standing", "sitting", "placed", "needs",
     "goes",
 })  # fmt: skip
-ALL_OF: Final = {"both": 2, "all three": 3, "all four": 4}
 ARTICLES: Final = frozenset({"the", "teh", "hte"})
 NEGATION: Final = "not"
 #: Words that hold a negation; with what is left of them.
 SHORT_NEGATIONS: Final = {
     "dont": "do", "isnt": "is", "shouldnt": "should", "never": "do", "cannot": "could",
     "mustnt": "must", "without": "do", "arent": "is", "wont": "will", "wouldnt": "would",
-    "cant": "could", "doesnt": "does", "neednt": "need",
+    "cant": "could", "dnt": "do", "doesnt": "does", "neednt": "need",
 }  # fmt: skip
 #: Number the steps, in front of a verb: "second, put red on blue"; elsewhere they name something.
 STEPS: Final = frozenset({"second", "third", "fourth", "fifth", "last"})
@@ -131,8 +134,8 @@ PLURALS: Final = {
 }  # fmt: skip
 #: Other words for a shape or a colour, where no object is called so.
 SYNONYMS: Final = {
-    "cube": "box", "cuboid": "box", "bx": "box", "boks": "box", "ball": "sphere", "roof": "prism", "wedge": "prism",
-    "gray": "grey", "violet": "purple",
+    "cube": "box", "cuboid": "box", "bx": "box", "boks": "box", "ball": "sphere", "roof": "prism",
+    "wedge": "prism", "gray": "grey", "violet": "purple",
 }  # fmt: skip
 NUMBERS: Final = {
     "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7,
@@ -144,10 +147,10 @@ OTHER_WORDS: Final = frozenset({
     "olive", "turquoise", "indigo", "amber", "coral", "crimson", "scarlet", "rose", "ruby",
     "plum", "lilac", "aqua", "azure", "bronze", "copper", "cream", "peach", "salmon", "tin",
     "bed", "glue", "line", "back", "ink", "pine", "bin", "can", "them", "they", "their",
-    "there", "here", "these", "those", "which", "only", "same", "different",
+    "there", "here", "these", "those", "which", "than", "only", "same", "different",
     "alone", "together", "either", "neither", "off",
     "nothing", "none", "everything", "something", "anything", "order", "him", "her", "his", "its",
-    "base", "peak", "only", "single", "half", "mean", "meant", "wait",
+    "base", "peak", "single", "half", "mean", "meant", "wait",
 })  # fmt: skip
 #: "the left stack", "the middle place"; with what they are called.
 SIDES: Final = {

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from .clauses import Link, Said
 from .language import BOTH, IT, MUTE, TAKES
+from .said import Link, Said
 
 _INSIDE: Final = frozenset({"in", "on", "at"})
 

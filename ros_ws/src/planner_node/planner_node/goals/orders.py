@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""In which order a tower or a row is told: "from bottom to top", "top first", "from the ground up"."""
+"""In which order a tower or a row is told: "from bottom to top", "from the ground up"."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ ORDERS: Final = {
     "right-to-left": (LEFT, True),
 }
 _ENDS: Final = {
-    "bottom": "bottom", "base": "bottom", "ground": "bottom", "below": "bottom", "top": "top",
+    "bottom": "bottom", "base": "bottom", "ground": "bottom", "floor": "bottom",
+    "below": "bottom", "top": "top",
     "above": "top", "left": "left", "right": "right",
 }  # fmt: skip
 _OPPOSITE: Final = {"bottom": "top", "top": "bottom", "left": "right", "right": "left"}

@@ -17,11 +17,12 @@ from typing import Final
 from scene_graph import PREDICATES, UP, Phrase
 
 from ..errors import InvalidGoalError
-from .clauses import EXAMPLE, Said, no_relation, read_clause
-from .language import ALL_OF, BOTH, IT
+from .clauses import read_clause
+from .language import BOTH, IT
 from .lists import is_listed, place_of, row_before, row_of, turned_at_comma
 from .objections import unclear, untold
 from .parsed import ParsedRelation
+from .said import EXAMPLE, Said, no_relation
 from .sentences import is_heading, sentences
 from .terms import Kind, Term, Words
 from .told import Told
@@ -61,18 +62,7 @@ class _Reader:
 
     def read(self, sentence: Sequence[Said]) -> None:
         """Adds the relations of a sentence."""
-        said = turned_at_comma(sentence)
-        for number, clause in enumerate(said):
-            if clause.order is not None:
-                before = [other for other in said[:number] if not is_heading(other.words)]
-                names, rest = row_of(said[number + 1 :])
-                if not names:
-                    before, clause, names = row_before(before, clause)
-                if rest and (standing := place_of(rest[0])):
-                    clause, rest = replace(clause, links=(*clause.links, standing)), rest[1:]
-                self._read_row(clause, clause.order, names)
-                said = [*before, *rest]
-                break
+        said = self._without_rows(turned_at_comma(sentence))
         waiting: list[Said] = []
         subjects: list[Term] = []
         last: Said | None = None
@@ -94,7 +84,7 @@ class _Reader:
                 assert clause.subject is not None
                 subjects, waiting, last = [clause.subject], [], clause
                 spoken = [*named, clause.subject]
-                if clause.subject.words.text in BOTH or clause.subject.bare:
+                if clause.subject.stands_for_several:
                     spoken = named or self._told.all_named(clause.subject)
                 for term in spoken:
                     self._told.clear(self._told.meant(term, None))
@@ -147,6 +137,22 @@ class _Reader:
             raise no_relation(self._text, waiting[0].words)
         if self.taken and last is not None:
             raise untold(self.taken[0])
+
+    def _without_rows(self, said: list[Said]) -> list[Said]:
+        """What is left of a sentence without a tower or a row, whose relations are added."""
+        for number, clause in enumerate(said):
+            if clause.order is None:
+                continue
+            before = [other for other in said[:number] if not is_heading(other.words)]
+            names, rest = row_of(said[number + 1 :])
+            heading = clause
+            if not names:
+                before, heading, names = row_before(before, clause)
+            if rest and (standing := place_of(rest[0])):
+                heading, rest = replace(heading, links=(*heading.links, standing)), rest[1:]
+            self._read_row(heading, clause.order, names)
+            return [*before, *rest]
+        return said
 
     def _read_row(self, heading: Said, order: tuple[str, bool], names: Sequence[Said]) -> None:
         """The relations of "from bottom to top in stack 1: red, green, blue"."""
@@ -209,17 +215,12 @@ class _Reader:
         if clause.subject.words.text in pronoun and self.taken and not named:
             taken, self.taken = self.taken, []
             return taken
-        if (
-            clause.subject.words.text in BOTH
-            and len(named) == ALL_OF.get(clause.subject.words.text, len(named))
-            and len(named) > 1
-        ):
-            return list(named)  # "red and blue, put them in stack1"
-        if clause.subject.bare and clause.subject.kind is Kind.EVERY and (named or self._told.relations):
-            # "red, green and blue, all in stack 1"
-            return list(named) if len(named) > 1 else self._told.all_named(clause.subject)
-        if clause.subject.words.text in BOTH:
+        if clause.subject.stands_for_several:
+            if len(named) == (clause.subject.exact or len(named)) and len(named) > 1:
+                return list(named)  # "red and blue, put them in stack1"
             return [*named, *self._told.all_named(clause.subject)]
+        if clause.subject.words.text in IT and len(named) == 1:
+            return list(named)  # "the red box, it goes on blue"
         if clause.subject.words.text in _WHICH and not named:
             if (
                 self._told.object is None

@@ -49,9 +49,11 @@ def in_one_place(blocks: Sequence[Term], same: bool, denied: bool) -> list[Parse
         if denied and blocks[0].exact != 2:
             return None
         blocks = [blocks[0], blocks[0]]  # "the red ones in the same stack"
-    elif len(blocks) < 2 or any(term.kind is not Kind.THE or term.is_place for term in blocks):
-        return None
-    elif len(blocks) > 2 and denied:
+    elif (
+        len(blocks) < 2
+        or any(term.kind is not Kind.THE or term.is_place for term in blocks)
+        or (len(blocks) > 2 and denied)
+    ):
         return None
     # In one stack are those of which none is left of the other.
     predicate = PREDICATES[LEFT if same != denied else ABOVE]

@@ -25,8 +25,8 @@ from .language import (
     TAKES,
     meant,
 )
-from .merged import MERGED
 from .terms import Words
+from .wordings import MERGED
 
 #: Words of phrases that a typo is looked for; the shorter ones are like too much.
 _TYPED_WRONG: Final = frozenset({
@@ -41,7 +41,7 @@ RIGHT_WORDS: Final = frozenset().union(
 _Phrases = Mapping[tuple[str, ...], Phrase]
 
 #: Words that a slip of the fingers is looked for in every word.
-_COMMON: Final = frozenset(
+_COMMON: Final = {"neither", "nothing", "everything", "different"} | frozenset(
     word
     for word in RIGHT_WORDS.union(*MERGED, *PREDICATES.phrases, PLACE_NOUNS, SIDES) - OTHER_WORDS
     if len(word) >= 4 and word.isalpha() and word not in COLORS and word not in SHAPES

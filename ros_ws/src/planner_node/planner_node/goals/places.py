@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names of places: "stack 1", "the left pile", "the second stack from the right", "stacks 0 and 2"."""
+"""Names of places: "the left pile", "the second stack from the right", "stacks 0 and 2"."""
 
 from __future__ import annotations
 
@@ -26,7 +26,12 @@ def place_at(words: Sequence[Words], before: str = "") -> tuple[list[Words], int
     "stack 1 from right". Several are joined by "and" or "or", as they were.
     """
     texts = [item.text for item in words]
-    return _beside(words, texts, before) or _from_side(words, texts, before) or _several(words)
+    return (
+        _beside(words, texts, before)
+        or _on_side(words, texts)
+        or _from_side(words, texts, before)
+        or _several(words)
+    )
 
 
 def _beside(
@@ -52,6 +57,18 @@ def _beside(
     return [Words(f"{side} stack", words[0].offset, words[used - 1].stop)], used
 
 
+def _on_side(words: Sequence[Words], texts: Sequence[str]) -> tuple[list[Words], int] | None:
+    """ "stack on the left"."""
+    if texts[0] not in PLACE_NOUNS or len(texts) < 3 or texts[1] not in ("on", "at"):
+        return None
+    far = 2 + (texts[2] in _FURTHEST)
+    side = SIDES.get(texts[far]) if far < len(texts) else None
+    used = far + 1 + (list(texts[far + 1 : far + 2]) == ["side"])
+    if side is None or list(texts[used : used + 1]) == ["of"]:
+        return None
+    return [Words(f"{side} stack", words[0].offset, words[used - 1].stop)], used
+
+
 def _from_side(
     words: Sequence[Words], texts: Sequence[str], before: str
 ) -> tuple[list[Words], int] | None:
@@ -63,6 +80,7 @@ def _from_side(
     if not noun and before not in _INSIDE:
         return None
     used = 1 + int(noun)
+    used += list(texts[used : used + 1]) in (["counting"], ["counted"])
     if list(texts[used : used + 1]) != ["from"] or len(texts) < used + 2:
         return None
     side = texts[used + 1]

@@ -61,8 +61,8 @@ def plainer(words: Sequence[Words]) -> Plain | None:
             return Plain([*words[:at], *phrase, *words[at + 1 :]], adjacent=True)
     if told := _except_behind(words):
         return Plain(told)
-    if told := _edge_of_place(words):
-        return Plain(told[0], edge=told[1])
+    if at_edge := _edge_of_place(words):
+        return Plain(at_edge[0], edge=at_edge[1])
     if texts[-1] in _NEIGHBOURS and len(texts) > 1:
         end = words[-1]
         return Plain([*words[:-1], *(Words(text, end.offset, end.stop) for text in _SIDE_BY_SIDE)])
@@ -83,6 +83,9 @@ def _except_behind(words: Sequence[Words]) -> list[Words] | None:
     if not found or not found[0].first:
         return None
     first = found[0].first
+    if words[first - 1].text == "nothing":
+        only = Words("only", words[first - 1].offset, words[at].stop)
+        return [*words[: first - 1], only, *words[at + 1 :], *words[first:at]]
     return [*words[:first], *words[at:], *words[first:at]]
 
 

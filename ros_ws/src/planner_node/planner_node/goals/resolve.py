@@ -23,7 +23,6 @@ from scene_graph import (
 )
 
 from ..errors import AmbiguousObjectError, InvalidGoalError, UnknownObjectError
-from .clauses import EXAMPLE
 from .goal import Count, Goal
 from .language import (
     CLEAR,
@@ -39,6 +38,7 @@ from .language import (
 )
 from .parsed import ParsedRelation
 from .resolve_places import is_place_word, place_named, unknown_place
+from .said import EXAMPLE
 from .terms import Kind, Term, Words
 
 #: Left out of a name where they were typed wrong.
@@ -236,20 +236,35 @@ def _mended(parts: Sequence[str], known: set[str]) -> list[str]:
         for part in parts
     ]
     first, last = 0, len(parts)
-    while first < last and right[first] is None and meant(parts[first], _LEFT_OUT, _RIGHT):
+    while first < last and right[first] is None and _means_nothing(parts[first], _LEFT_OUT):
         first += 1
     while (
-        first < last and right[last - 1] is None and meant(parts[last - 1], MODALS | POLITE, _RIGHT)
+        first < last
+        and right[last - 1] is None
+        and _means_nothing(parts[last - 1], MODALS | POLITE)
     ):
         last -= 1
     kept = [word or part for word, part in zip(right[first:last], parts[first:last])]
     return [one for part in kept for one in _apart(part, known)]
 
 
+def _means_nothing(part: str, known: frozenset[str]) -> bool:
+    """Whether it is one of these with a typo; the shorter a word, the more it is like others."""
+    return len(part) > 3 and meant(part, known, _RIGHT) is not None
+
+
 def _shortened(part: str, known: set[str]) -> str | None:
-    """The one word that begins so: "yel" for "yellow"."""
-    found = [word for word in known if word.startswith(part)]
-    return found[0] if len(found) == 1 and len(part) > 2 and part not in _RIGHT else None
+    """The one word of which letters were left out: "yel" or "ylw" for "yellow"."""
+    if len(part) < 3 or part in _RIGHT:
+        return None
+    found = [word for word in known if word[0] == part[0] and _in_order(part, word)]
+    return found[0] if len(found) == 1 else None
+
+
+def _in_order(letters: str, word: str) -> bool:
+    """Whether a word has these letters in this order."""
+    rest = iter(word)
+    return all(letter in rest for letter in letters)
 
 
 def _apart(part: str, known: set[str]) -> list[str]:

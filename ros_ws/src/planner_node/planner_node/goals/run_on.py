@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names with nothing between them: "red on blue green on yellow", "red green and blue in stack 1"."""
+"""Names with nothing between them: "red on blue green on yellow"."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ from typing import Final
 
 from scene_graph import COLORS, PREDICATES, SHAPES
 
-from .language import HEADING, HOLDS, MUTE, NOUN_VERBS, NOUNS, PLURALS, SYNONYMS, TAKES
+from .language import CARRIES, HEADING, HOLDS, MUTE, NOUN_VERBS, NOUNS, PLURALS, SYNONYMS, TAKES
 from .orders import ORDERS
 from .phrases import RIGHT_WORDS, find
-from .terms import Words, is_quantity
+from .quantities import is_quantity
+from .terms import Words
 
 _SHAPES: Final = frozenset(SHAPES) | {word for word in SYNONYMS if SYNONYMS[word] in SHAPES}
 _COLORS: Final = frozenset(COLORS) | {word for word in SYNONYMS if SYNONYMS[word] in COLORS}
 _ALONE: Final = frozenset({"it", "them", "nothing"})
-_MEANS_NOTHING: Final = (MUTE | TAKES) - NOUN_VERBS - HOLDS
+_MEANS_NOTHING: Final = (MUTE | TAKES) - NOUN_VERBS - HOLDS - CARRIES
 
 
 def told_apart(clause: list[Words]) -> Iterator[list[Words]]:
@@ -88,8 +89,12 @@ def _name(words: Sequence[Words]) -> int:
     index = 0
     while index < len(texts) and is_quantity(texts[index]):
         index += 1
-    rest = [PLURALS.get(text, text) for text in texts[index : index + 2]]
-    if len(rest) == 2 and rest[1] in NOUNS | _SHAPES and _may_be_color(rest[0]):
+    rest = [PLURALS.get(text, text) for text in texts[index : index + 3]]
+    if rest[:1] and rest[0] in _SHAPES and rest[1:2] and rest[1] in _COLORS:
+        if rest[2:] and rest[2] in NOUNS | _SHAPES:
+            return 0 if texts[index] in PLURALS and not index else index + 1
+        return index + 2  # "the box blue"
+    if len(rest) > 1 and rest[1] in NOUNS | _SHAPES and _may_be_color(rest[0]):
         return index + 2
     if rest and (rest[0] in _COLORS or rest[0] in _SHAPES or (index and rest[0] in NOUNS)):
         return index + 1

@@ -19,6 +19,7 @@ from .language import (
     NEGATION,
     NOUN_VERBS,
     OPENINGS,
+    PLURALS,
     meant,
 )
 from .merged import merged
@@ -65,7 +66,10 @@ def _written(text: str) -> Iterator[list[list[Words]]]:
     """The sentences as they are written, in the parts that commas make."""
     clauses: list[list[Words]] = []
     for part in parts_of(text):
-        clause = without_courtesy(merged(part.words))
+        words = part.words
+        if part.mark == ")" and words and words[-1].text in "abcdefgh":
+            words = words[:-1]  # "a) red on blue"
+        clause = without_courtesy(merged(words))
         if part.mark == ":" and (place := _place_heading(clause)):
             # "stack 1: red" is a sentence of its own.
             yield clauses
@@ -153,11 +157,20 @@ def _split(clauses: Sequence[list[Words]]) -> Iterator[list[Words]]:
             elif item.text not in JOINS and not (item.text in OPENINGS and _has_phrase(part)):
                 part.append(item)
             else:
+                if item.text == "and":
+                    part = _without_both(part)
                 if part and not _says_nothing(part):
                     yield part
                 part = []
         if part and not _says_nothing(part):
             yield part
+
+
+def _without_both(part: list[Words]) -> list[Words]:
+    """ "both red" in front of "and blue" without its "both"."""
+    at = next((index for index, item in enumerate(part) if item.text == "both"), len(part) - 1)
+    named = at + 1 < len(part) and part[-1].text not in PLURALS and not _has_phrase(part)
+    return [*part[:at], *part[at + 1 :]] if named else part
 
 
 def _leaves_out(part: Sequence[Words]) -> bool:

@@ -10,10 +10,10 @@ from itertools import pairwise
 from scene_graph import ABOVE, BESIDE, LEFT, PREDICATES, UP, Phrase
 
 from ..errors import InvalidGoalError
-from .clauses import Said, no_relation
-from .language import ALL_OF, BOTH, DIFFERENT_PLACES, EACH_OTHER, IT, SAME_PLACE
+from .language import DIFFERENT_PLACES, EACH_OTHER, IT, SAME_PLACE
 from .objections import check_places, unclear
 from .parsed import ParsedRelation, counted, in_one_place, none_but
+from .said import Said, no_relation
 from .terms import Kind, Term, Words, is_any_place
 
 
@@ -38,11 +38,14 @@ class Told:
         self._named: dict[str, Term] = {}
 
     def all_named(self, term: Term) -> list[Term]:
-        """The blocks that "both" or "all three" stands for: those that were named, if so many."""
-        number = ALL_OF.get(term.words.text, 2)
-        if term.bare:
-            number = max(2, len(self._named))  # "all in stack1"
+        """The blocks that "both" or "all three" stands for: those that were named, if so many.
+
+        "all" of more than were named, or of none, is every one of the scene.
+        """
+        number = term.exact or (2 if not term.bare else max(2, len(self._named)))
         if len(self._named) != number:
+            if term.bare and (term.exact is not None or not self._named):
+                return [replace(term, bare=False)]
             raise unclear(term)
         return list(self._named.values())
 
@@ -108,7 +111,7 @@ class Told:
                 subjects, objects = subjects[:1], subjects[1:]
             elif self._about_one_place(subjects, phrase, denied, object_):
                 continue
-            elif object_.words.text in BOTH:
+            elif object_.stands_for_several:
                 objects = self.all_named(object_)
             else:
                 objects = [self.meant(object_, phrase, carried)]
@@ -231,9 +234,7 @@ class Told:
                 }:
                     # Who else was named may be meant as well.
                     raise unclear(subject)
-                subject = replace(
-                    subject, others=False, but=tuple(self._named.values())
-                )
+                subject = replace(subject, others=False, but=tuple(self._named.values()))
             for term in (subject, object_):
                 if term.words.text in IT:
                     raise unclear(term)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from scene_graph import PREDICATES
@@ -20,17 +20,19 @@ _LEVELS: Final = {
     for very in ((), ("very",), ("its",))
     for noun, level in (("bottom", 0), ("base", 0), ("top", 2), ("peak", 2))
 } | {
-    ("in", "middle"): 1, ("in", "between"): 1, ("between", "them"): 1, ("in", "between", "them"): 1,
+    ("bottom",): 0, ("top",): 2, ("middle",): 1, ("in", "middle"): 1, ("in", "between"): 1,
+    ("between", "them"): 1, ("in", "between", "them"): 1,
 }  # fmt: skip
 _LONGEST: Final = max(map(len, _LEVELS))
 
 
 @dataclass(frozen=True)
 class _Block:
-    """A clause that names a block, and where it says that the block is."""
+    """A clause that names a block, and where it says that the block is, in which place."""
 
     name: list[Words]
     level: int | None
+    place: list[Words] = field(default_factory=list)
 
 
 def as_tower(clauses: list[list[Words]]) -> list[list[Words]]:
@@ -43,7 +45,7 @@ def as_tower(clauses: list[list[Words]]) -> list[list[Words]]:
     if not levelled:
         return clauses
     first, last = levelled[0], levelled[-1]
-    if first == last:
+    if first == last and not _has_phrase(told[first]):
         last = _last_listed(clauses, first)
     if first == last:
         return clauses
@@ -52,6 +54,11 @@ def as_tower(clauses: list[list[Words]]) -> list[list[Words]]:
     heading, name = _heading_before(blocks[0].name)
     if len(blocks) != len(run) or (heading and first):
         return clauses
+    places = [block.place for block in blocks if block.place]
+    if places and (len(blocks) < 3 or len(places) > 1):
+        return clauses
+    if places:
+        heading = [*heading, Words("in", places[0][0].offset, places[0][0].offset), *places[0]]
     ordered = _from_bottom([_Block(name, blocks[0].level), *blocks[1:]])
     if ordered is None:
         return clauses
@@ -96,6 +103,11 @@ def _block(clause: Sequence[Words]) -> _Block | None:
     texts = tuple(item.text for item in clause)
     if NEGATION in texts:
         return None
+    for last in (2, 1):
+        place = list(clause[-last:])
+        if texts[-last - 1 : -last] == ("of",) and _is_place(place):
+            block = _block(clause[: -last - 1])
+            return block and (None if block.level is None else replace(block, place=place))
     for length in range(min(_LONGEST, len(texts) - 1), 0, -1):
         if (level := _LEVELS.get(texts[-length:])) is not None:
             return _Block(list(clause[:-length]), level)
@@ -105,6 +117,14 @@ def _block(clause: Sequence[Words]) -> _Block | None:
                 name.pop(0)
             return _Block(name, level)
     return _Block(list(clause), None)
+
+
+def _has_phrase(block: _Block | None) -> bool:
+    return block is not None and any(True for _ in find(block.name, PREDICATES.phrases))
+
+
+def _is_place(words: Sequence[Words]) -> bool:
+    return Words(" ".join(item.text for item in words), 0).is_place
 
 
 def _heading_before(words: list[Words]) -> tuple[list[Words], list[Words]]:
