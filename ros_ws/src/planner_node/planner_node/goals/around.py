@@ -48,7 +48,7 @@ def names_a_place(rest: Sequence[Words]) -> bool:
 def without_ends(words: Sequence[Words]) -> list[Words]:
     """Without the words at either end that mean nothing."""
     kept = list(words)
-    while kept and kept[-1].text in MUTE - NOUN_VERBS:
+    while kept and kept[-1].text in (MUTE - NOUN_VERBS) | {"which"}:
         kept.pop()
     while kept and kept[0].text in MUTE - NOUN_VERBS:
         kept.pop(0)

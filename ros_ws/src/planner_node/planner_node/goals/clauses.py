@@ -15,6 +15,7 @@ from .language import (
     CLEAR,
     IT,
     MODALS,
+    MORE_COLORS,
     MUTE,
     NEGATION,
     NOUN_VERBS,
@@ -128,7 +129,7 @@ def read_clause(text: str, words: list[Words]) -> Said:
 def _check_subject(words: Sequence[Words]) -> None:
     """Raises InvalidGoalError for "the one that is on blue": what is there now is not known."""
     for noun, that, verb in zip(words, words[1:], words[2:]):
-        known = noun.text in NOUNS or noun.text in SHAPES or noun.text in COLORS
+        known = noun.text in NOUNS or noun.text in SHAPES or noun.text in {*COLORS, *MORE_COLORS}
         if known and that.text in ("that", "which", "who") and verb.text in MUTE:
             raise InvalidGoalError("say which block by its name", that.offset, that.text)
 

@@ -6,7 +6,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from .language import CARRIES, HOLDS, MUTE, NEGATION, NOUN_VERBS, PLACE_NOUNS, PLURALS
+from scene_graph import PREDICATES
+
+from .language import CARRIES, HOLDS, IT, MUTE, NEGATION, NOUN_VERBS, PLACE_NOUNS, PLURALS
+from .phrases import find
 from .terms import Words, number_of
 
 _EVERY: Final = frozenset({"every", "each", "all"})
@@ -52,15 +55,29 @@ def as_relation(words: Sequence[Words]) -> list[Words] | None:
             held = fewer
         inside = "at-top-of" if there[-1:] == ("top",) else "in"
         return [*held, Words(inside, held[0].offset), *place]
-    # "red has nothing on it", "red carries blue": of blocks only what is on them.
-    if not carries and (not there or there[0] != "on"):
+    # "red has nothing on it", "red carries blue", "red has blue below it".
+    if there and there[0] == "on":
+        held = [*held, Words("on", held[0].offset)]
+    elif beside := _related_to_it(held):
+        held = beside
+    elif carries:
+        held = [*held, Words("on", held[0].offset)]
+    else:
         return None
     if denied:
         fewer = _denied(held)
         if fewer is None:
             return None
         held = fewer
-    return [*held, Words("on", held[0].offset), *whose]
+    return [*held, *whose]
+
+
+def _related_to_it(held: Sequence[Words]) -> list[Words] | None:
+    """ "blue below it" without "it"; None where it says no relation to it."""
+    found = list(find(held, PREDICATES.phrases))
+    if len(found) != 1 or found[0].last != len(held) - 1 or held[-1].text not in IT:
+        return None
+    return list(held[:-1]) if found[0].first else None
 
 
 def _at(words: Sequence[Words], known: frozenset[str]) -> int:

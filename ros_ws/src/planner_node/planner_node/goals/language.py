@@ -16,7 +16,7 @@ NOUN_VERBS: Final = frozenset({"place", "stack", "position"})
 #: Ask for the relation that follows.
 VERBS: Final = NOUN_VERBS | {
     "put", "move", "set", "get", "bring", "lay", "drop", "leave", "keep", "shift", "push",
-    "slide", "transfer", "arrange", "build", "rest", "balance", "sit", "make", "let", "have",
+    "slide", "transfer", "arrange", "build", "balance", "sit", "make", "let", "have",
     "relocate", "stick", "add", "pop", "plop", "plonk", "chuck", "dump", "shove", "hoist",
     "remove", "load", "deposit", "carry", "placing", "putting", "moving", "stacking",
 }  # fmt: skip
@@ -39,9 +39,9 @@ MUTE: Final = VERBS | {
     "pleas", "was", "secondly", "thirdly", "lastly", "together", "instead", "itself",
     "themselves", "ask", "trouble", "think", "guess", "suppose", "see", "check", "confirm",
     "verify", "am", "er", "erm", "um", "uh", "uhm", "really", "certain", "kind", "enough", "asap",
-    "quick", "pray", "suggest", "request", "strictly", "basically", "literally", "definitely",
-    "absolutely", "always", "completely", "totally", "ideally", "actual", "needing", "slowly",
-    "careful", "been", "found", "end", "kept", "stood", "sat", "put", "seen", "cheers",
+    "quick", "pray", "rest", "suggest", "request", "strictly", "basically", "literally",
+    "definitely", "absolutely", "always", "completely", "totally", "ideally", "actual", "needing",
+    "slowly", "careful", "been", "found", "end", "kept", "stood", "sat", "put", "seen", "cheers",
     "appreciate", "good", "grateful", "possible",
 }  # fmt: skip
 #: Join relations as a comma does.
@@ -91,6 +91,8 @@ TAKEN_BACK: Final = "taken-back"
 BOTH: Final = frozenset({"both", "they", "them", "these", "either-of-them"})
 #: The block that was named before.
 IT: Final = frozenset({"it", "this", "that", "him", "her"})
+#: Where a block is said to be: "red on top".
+UPON: Final = "upon"
 EACH_OTHER: Final = frozenset({"each-other"})
 _PLACES: Final = ("stack", "tower", "place", "pile", "column")
 #: "in the same stack", "in different stacks"; a plural comes without its s.
@@ -117,7 +119,7 @@ STEPS: Final = frozenset({"second", "third", "fourth", "fifth", "last"})
 HOLDS: Final = frozenset({"have", "has", "contain", "contains", "hold", "holds"})
 
 #: Say of a block what is on it.
-CARRIES: Final = frozenset({"carry", "carries", "bear", "bears", "support"})
+CARRIES: Final = frozenset({"carry", "carries", "bear", "bears", "support", "hold", "holds"})
 
 #: Fit every object.
 NOUNS: Final = frozenset({
@@ -141,17 +143,20 @@ NUMBERS: Final = {
     "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7,
     "eight": 8, "nine": 9, "ten": 10,
 }  # fmt: skip
-#: Words that are right as they are, so that they are not taken for others with a typo.
-OTHER_WORDS: Final = frozenset({
+#: Colours beside those of :data:`scene_graph.COLORS`.
+MORE_COLORS: Final = frozenset({
     "white", "gold", "golden", "silver", "tan", "teal", "lime", "navy", "beige", "maroon",
     "olive", "turquoise", "indigo", "amber", "coral", "crimson", "scarlet", "rose", "ruby",
-    "plum", "lilac", "aqua", "azure", "bronze", "copper", "cream", "peach", "salmon", "tin",
-    "bed", "glue", "line", "back", "ink", "pine", "bin", "can", "them", "they", "their",
-    "there", "here", "these", "those", "which", "than", "only", "same", "different",
-    "alone", "together", "either", "neither", "off",
-    "nothing", "none", "everything", "something", "anything", "order", "him", "her", "his", "its",
-    "base", "peak", "single", "half", "mean", "meant", "wait",
+    "plum", "lilac", "aqua", "azure", "bronze", "copper", "cream", "peach", "salmon",
 })  # fmt: skip
+#: Words that are right as they are, so that they are not taken for others with a typo.
+OTHER_WORDS: Final = MORE_COLORS | {
+    "tin", "bed", "glue", "line", "back", "ink", "pine", "bin", "can", "them", "they", "their",
+    "there", "here", "these", "those", "which", "than", "only", "same", "different", "alone",
+    "together", "either", "neither", "off", "nothing", "none", "everything", "something",
+    "anything", "order", "him", "her", "his", "its", "base", "peak", "single", "half", "mean",
+    "meant", "wait",
+}  # fmt: skip
 #: "the left stack", "the middle place"; with what they are called.
 SIDES: Final = {
     "left": "left", "leftmost": "left", "middle": "middle", "center": "middle", "centre": "middle",

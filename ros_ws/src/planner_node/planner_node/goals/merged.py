@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from .language import ARTICLES, HOLDS, MUTE, NOUN_VERBS, TAKES
+from .language import ARTICLES, HOLDS, JOINS, MUTE, NOUN_VERBS, TAKES
 from .orders import order_at
 from .places import place_at
 from .terms import Words, number_of
@@ -42,6 +42,8 @@ def _at(words: Sequence[Words], before: str, removing: bool) -> tuple[list[Words
             offset, stop = words[0].offset, words[length - 1].stop
             return [Words(text, offset, stop) for text in MERGED[texts]], length
     texts = tuple(item.text for item in words)
+    if texts[0] == "rest" and (not before or before in JOINS):
+        return [Words("others", words[0].offset, words[0].stop)], 1
     if order := order_at(texts, before):
         name, used = order
         return [Words(name, words[0].offset, words[used - 1].stop)], used
@@ -102,6 +104,9 @@ def _without_articles(words: Sequence[Words]) -> list[Words]:
     """ "the two boxes" as "all two boxes"; "the only box" keeps its article, all others go."""
     result: list[Words] = []
     for index, item in enumerate(words):
+        if item.text == "rest" and index and words[index - 1].text in ARTICLES:
+            result.append(Words("others", item.offset, item.stop))
+            continue
         if item.text not in ARTICLES:
             result.append(item)
             continue

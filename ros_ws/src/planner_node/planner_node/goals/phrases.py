@@ -11,7 +11,9 @@ from scene_graph import COLORS, PREDICATES, SHAPES, Phrase
 
 from .language import (
     ARTICLES,
+    CARRIES,
     CLEAR,
+    HOLDS,
     JOINS,
     MUTE,
     NOUNS,
@@ -35,6 +37,7 @@ _TYPED_WRONG: Final = frozenset({
 })  # fmt: skip
 #: Words that are right as they are.
 RIGHT_WORDS: Final = frozenset().union(
+    HOLDS, CARRIES,
     COLORS, SHAPES, NOUNS, MUTE, OPENINGS, CLEAR, TAKES, OTHER_WORDS, JOINS, PLURALS, SYNONYMS,
     NUMBERS, {"not", "it", "of", "no"},
 )  # fmt: skip

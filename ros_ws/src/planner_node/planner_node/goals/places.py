@@ -50,7 +50,7 @@ def _beside(
     inside = before in _INSIDE and furthest
     if not noun and inside and behind[:1] != ["of"]:
         used = at + 1 + int(behind[:1] == ["one"])
-    elif noun and not (len(behind) > 1 and number_of(behind[1]) is not None):
+    elif noun and (before in _INSIDE or not behind[1:] or number_of(behind[1]) is None):
         used = at + 2
     else:
         return None

@@ -9,19 +9,16 @@ from typing import Final
 
 from scene_graph import PREDICATES
 
+from .described import by_place
 from .holdings import as_relation
-from .language import EXCEPT, MUTE, NOUN_VERBS, NOUNS, STEPS, TAKES, VERBS
+from .language import EXCEPT, STEPS, TAKES, UPON, VERBS
 from .phrases import find
-from .terms import Words
+from .terms import Words, number_of
 
 _EDGES: Final = (
     ("at", "top"), ("at", "very", "top"), ("on", "very", "top"), ("at", "bottom"),
-    ("at", "very", "bottom"), ("on", "very", "bottom"),
+    ("at", "very", "bottom"), ("on", "very", "bottom"), ("on", "top"),
 )  # fmt: skip
-_ENDS: Final = {
-    "top": "top", "topmost": "top", "uppermost": "top", "highest": "top", "bottom": "bottom",
-    "lowest": "bottom", "bottommost": "bottom", "base": "bottom",
-}  # fmt: skip
 _NEIGHBOURS: Final = frozenset({"adjacent", "neighbours", "neighbors", "neighbouring"})
 _SIDE_BY_SIDE: Final = ("next", "to", "each-other")
 _JUST: Final = {"just-left-of": "left", "just-right-of": "right"}
@@ -32,7 +29,8 @@ class Plain:
     """A clause in plainer words, and what else it says.
 
     Attributes:
-        edge: "top" or "bottom" where it says that its subject is there.
+        edge: "top" or "bottom" where it says that its subject is there; UPON where it says "on top",
+            of what was spoken of.
         adjacent: it says that left or right is meant of neighbouring places.
         of_object: it was told of what is its object now.
     """
@@ -61,16 +59,19 @@ def plainer(words: Sequence[Words]) -> Plain | None:
             return Plain([*words[:at], *phrase, *words[at + 1 :]], adjacent=True)
     if told := _except_behind(words):
         return Plain(told)
-    if at_edge := _edge_of_place(words):
-        return Plain(at_edge[0], edge=at_edge[1])
+    if described := by_place(words):
+        return Plain(described[0], edge=described[1])
     if texts[-1] in _NEIGHBOURS and len(texts) > 1:
         end = words[-1]
         return Plain([*words[:-1], *(Words(text, end.offset, end.stop) for text in _SIDE_BY_SIDE)])
+    if texts[-1] in ("at-least", "at-most") and number_of(texts[0]) is not None:
+        return Plain([words[-1], *words[:-1]])  # "one block in every stack at least"
     if texts[-1] == "either" and len(words) > 1:
         return Plain(list(words[:-1]))
     for ending in _EDGES:
         if tuple(texts[-len(ending) :]) == ending and len(words) > len(ending):
-            return Plain(list(words[: -len(ending)]), edge=ending[-1])
+            edge = UPON if ending == ("on", "top") else ending[-1]
+            return Plain(list(words[: -len(ending)]), edge=edge)
     if held := as_relation(words):
         return Plain(held, of_object=True)
     return None
@@ -87,20 +88,3 @@ def _except_behind(words: Sequence[Words]) -> list[Words] | None:
         only = Words("only", words[first - 1].offset, words[at].stop)
         return [*words[: first - 1], only, *words[at + 1 :], *words[first:at]]
     return [*words[:first], *words[at:], *words[first:at]]
-
-
-def _edge_of_place(words: Sequence[Words]) -> tuple[list[Words], str] | None:
-    """ "the top block of stack1 is red" as "red in stack1", and its edge."""
-    texts = [item.text for item in words]
-    edge = _ENDS.get(texts[0])
-    at = 1 + (len(texts) > 1 and texts[1] in NOUNS)
-    if edge is None or texts[at : at + 1] not in (["of"], ["in"], ["on"]):
-        return None
-    start = at + 1
-    for stop in (start + 2, start + 1):
-        name = Words(" ".join(texts[start:stop]), words[0].offset)
-        behind = [item for item in words[stop:] if item.text not in MUTE - NOUN_VERBS]
-        if stop < len(words) and name.is_place and behind:
-            inside = Words("in", words[at].offset, words[at].stop)
-            return [*behind, inside, *words[start:stop]], edge
-    return None

@@ -8,14 +8,25 @@ from typing import Final
 
 from scene_graph import COLORS, PREDICATES, SHAPES
 
-from .language import CARRIES, HEADING, HOLDS, MUTE, NOUN_VERBS, NOUNS, PLURALS, SYNONYMS, TAKES
+from .language import (
+    CARRIES,
+    HEADING,
+    HOLDS,
+    MORE_COLORS,
+    MUTE,
+    NOUN_VERBS,
+    NOUNS,
+    PLURALS,
+    SYNONYMS,
+    TAKES,
+)
 from .orders import ORDERS
 from .phrases import RIGHT_WORDS, find
 from .quantities import is_quantity
 from .terms import Words
 
 _SHAPES: Final = frozenset(SHAPES) | {word for word in SYNONYMS if SYNONYMS[word] in SHAPES}
-_COLORS: Final = frozenset(COLORS) | {word for word in SYNONYMS if SYNONYMS[word] in COLORS}
+_COLORS: Final = frozenset(COLORS) | MORE_COLORS | SYNONYMS.keys() - _SHAPES
 _ALONE: Final = frozenset({"it", "them", "nothing"})
 _MEANS_NOTHING: Final = (MUTE | TAKES) - NOUN_VERBS - HOLDS - CARRIES
 

@@ -31,6 +31,7 @@ from .tokens import parts_of
 from .towers import as_tower
 
 _BEFORE_OPENING: Final = (MUTE | HEADING) - {"this", "one", "two", "them"}
+_NONE: Final = frozenset({"nothing", "no", "none"})
 _DENYING: Final = frozenset({NEGATION, "nothing", "none"})
 #: Say that a tower is what the heading before is about.
 _OF_TOWERS: Final = ORDERS.keys() | {"on", "upon", "top", "bottom", "base"}
@@ -65,6 +66,7 @@ def sentences(text: str) -> Iterator[list[list[Words]]]:
 def _written(text: str) -> Iterator[list[list[Words]]]:
     """The sentences as they are written, in the parts that commas make."""
     clauses: list[list[Words]] = []
+    colon = False
     for part in parts_of(text):
         words = part.words
         if part.mark == ")" and words and words[-1].text in "abcdefgh":
@@ -74,8 +76,11 @@ def _written(text: str) -> Iterator[list[list[Words]]]:
             # "stack 1: red" is a sentence of its own.
             yield clauses
             clauses = [place]
+        elif clauses and colon and _is_place(clause):
+            clauses[-1] = [*clauses[-1], *clause]  # "red: stack 1"
         elif clause and not (part.mark == ":" and is_heading(clause)):
             clauses.append(clause)
+        colon = part.mark == ":"
         if part.end:
             yield clauses
             clauses = []
@@ -106,6 +111,10 @@ def _place_heading(clause: list[Words]) -> list[Words] | None:
     if clause and Words(" ".join(item.text for item in clause), clause[0].offset).is_place:
         return [Words("in", clause[0].offset, clause[0].offset), *clause]
     return None
+
+
+def _is_place(words: Sequence[Words]) -> bool:
+    return bool(words) and Words(" ".join(item.text for item in words), 0).is_place
 
 
 def _with_order(clauses: Sequence[list[Words]]) -> list[list[Words]]:
@@ -186,7 +195,7 @@ def _split_negation(clause: list[Words], denied: bool) -> Iterator[list[Words]]:
     """
     texts = [item.text for item in clause]
     neither = "neither" in texts and "nor" in texts
-    nothing = "or" in texts and "nothing" in texts[: texts.index("or")]
+    nothing = "or" in texts and any(text in _NONE for text in texts[: texts.index("or")])
     if nothing or (denied and "or" in texts and NEGATION not in texts and not _has_phrase(clause)):
         # What is not on red or blue is on none of them.
         yield from _split(

@@ -10,7 +10,7 @@ from itertools import pairwise
 from scene_graph import ABOVE, BESIDE, LEFT, PREDICATES, UP, Phrase
 
 from ..errors import InvalidGoalError
-from .language import DIFFERENT_PLACES, EACH_OTHER, IT, SAME_PLACE
+from .language import DIFFERENT_PLACES, EACH_OTHER, IT, SAME_PLACE, UPON
 from .objections import check_places, unclear
 from .parsed import ParsedRelation, counted, in_one_place, none_but
 from .said import Said, no_relation
@@ -34,6 +34,8 @@ class Told:
         self.link: tuple[Phrase, bool, Words] | None = None
         #: The subjects of a relation that was told of its object.
         self._of_object: list[Term] = []
+        #: Those that were spoken of as "every box"; a number of blocks leaves open which they are.
+        self._kinds: list[Term] = []
         #: All blocks that were named, by their words.
         self._named: dict[str, Term] = {}
 
@@ -151,6 +153,9 @@ class Told:
             _, denied, place, written = clause.links[0]
         if place is None or not place.is_place or place.is_every_place or denied:
             raise no_relation(self._text, clause.words)
+        if clause.edge == UPON and len(self.subjects) == 1 and self.subjects[0].kind is Kind.THE:
+            # "red in stack1, blue on top": of it, or of the stack?
+            raise unclear(subjects[0])
         bottom = clause.edge == "bottom"
         phrase = Phrase(PREDICATES[UP if bottom else ABOVE])
         self.add(subjects, phrase, False, written, place)
@@ -227,14 +232,17 @@ class Told:
         self._named |= {words.text: Term(words) for term in subjects for words in term.among}
         for subject in subjects:
             if subject.others:
-                if not self._named:
+                spoken = [*self._named.values(), *self._kinds]
+                if not spoken or any(term.kind is Kind.COUNT for term in spoken):
                     raise unclear(subject)
                 if subject.kind is Kind.NO and set(self._named) != {
                     term.words.text for term in self.subjects
                 }:
                     # Who else was named may be meant as well.
                     raise unclear(subject)
-                subject = replace(subject, others=False, but=tuple(self._named.values()))
+                subject = replace(subject, others=False, but=tuple(spoken))
+            if subject.kind in (Kind.EVERY, Kind.COUNT) and not subject.others:
+                self._kinds.append(subject)
             for term in (subject, object_):
                 if term.words.text in IT:
                     raise unclear(term)
