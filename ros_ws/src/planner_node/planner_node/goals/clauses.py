@@ -35,6 +35,8 @@ from .unrelated import tower_heading, unrelated
 _GOES: Final = frozenset({"go", "be", "sit", "stand", "come"})
 _AGAIN: Final = frozenset({"so", "neither", "nor"})
 _MODALS: Final = MODALS | {"is", "may", "can", "does", "do", "will"}
+#: What is not said of all may be said of some.
+_ALL: Final = frozenset({"all", "every", "each", "everything"})
 _ANY: Final = {"anything": "nothing", "any": "no"}
 
 
@@ -80,6 +82,8 @@ def read_clause(text: str, words: list[Words]) -> Said:
         before = before[wants[-1] + 1 :] or before
     if before and before[0].text in ("no", "nothing", "none"):
         before = [item for item in before if item.text not in ("allowed", "permitted")]
+    if negated and before and before[0].text in _ALL and not _is_away(text, negated[0]):
+        raise InvalidGoalError("say 'no' for none of them", negated[0].offset, NEGATION)
     if negated and before and before[0].offset < negated[0].offset < before[-1].offset:
         # "the boxes not red"
         raise InvalidGoalError("it is not clear what 'not' is said of", negated[0].offset, NEGATION)
@@ -124,6 +128,11 @@ def read_clause(text: str, words: list[Words]) -> Said:
     if negated and subject.kind is not Kind.THE and negated[0].offset < before[0].offset:
         raise InvalidGoalError("it is not clear what 'not' is said of", negated[0].offset, NEGATION)
     return Said(words, subject, tuple(read))
+
+
+def _is_away(text: str, denial: Words) -> bool:
+    """Whether it was written "off", "out of" or "from": "everything off red"."""
+    return text[denial.offset : denial.stop].lower().startswith(("off", "out", "from"))
 
 
 def _check_subject(words: Sequence[Words]) -> None:

@@ -24,6 +24,12 @@ _FRAME: Final = POLITE | {
     "such", "as", "by", "this", "that", "if", "out", "and", "arrange", "suggest", "request",
     "permission", "with", "your", "rather", "sorry", "please", "wonder", "wondering", "asking",
 }  # fmt: skip
+#: In front of "if", they make a wish of it; without them it asks, or is a condition.
+_WISHES: Final = frozenset({
+    "like", "love", "prefer", "appreciate", "grateful", "glad", "happy", "pleased", "delighted",
+    "nice", "great", "lovely", "cool", "perfect", "wonderful", "good", "best", "kind", "obliged",
+    "appreciated",
+})  # fmt: skip
 #: May follow "if" where it is no condition: "if you can", "if it is not too much trouble".
 _IF: Final = frozenset({
     "you", "can", "could", "would", "will", "please", "possible", "it", "is", "not", "too", "much",
@@ -38,10 +44,9 @@ def without_courtesy(words: Sequence[Words]) -> list[Words]:
     kept = _without_if(list(words))
     texts = [item.text for item in kept]
     frame = next((at for at, text in enumerate(texts) if text not in _FRAME), len(texts))
-    marks = [at for at in range(1, frame) if texts[at] in ("that", "if")]
-    for at in reversed(marks):
-        # "on that" and "put it so that" are something else.
-        if "if" in texts[: at + 1] or at + 1 < len(texts):
+    for at in range(min(frame, len(texts) - 1) - 1, 0, -1):
+        wished = texts[at] == "if" and any(text in _WISHES for text in texts[:at])
+        if wished or (texts[at] == "that" and "if" not in texts[:at]):
             return kept[at + 1 :]
     return kept
 

@@ -111,7 +111,7 @@ NEGATION: Final = "not"
 SHORT_NEGATIONS: Final = {
     "dont": "do", "isnt": "is", "shouldnt": "should", "never": "do", "cannot": "could",
     "mustnt": "must", "without": "do", "arent": "is", "wont": "will", "wouldnt": "would",
-    "cant": "could", "dnt": "do", "doesnt": "does", "neednt": "need",
+    "cant": "could", "dnt": "do", "doesnt": "does",
 }  # fmt: skip
 #: Number the steps, in front of a verb: "second, put red on blue"; elsewhere they name something.
 STEPS: Final = frozenset({"second", "third", "fourth", "fifth", "last"})
@@ -151,6 +151,7 @@ MORE_COLORS: Final = frozenset({
 })  # fmt: skip
 #: Words that are right as they are, so that they are not taken for others with a typo.
 OTHER_WORDS: Final = MORE_COLORS | {
+    "light", "dark", "pale", "bright", "deep",
     "tin", "bed", "glue", "line", "back", "ink", "pine", "bin", "can", "them", "they", "their",
     "there", "here", "these", "those", "which", "than", "only", "same", "different", "alone",
     "together", "either", "neither", "off", "nothing", "none", "everything", "something",

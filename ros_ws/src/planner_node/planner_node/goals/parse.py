@@ -58,10 +58,13 @@ class _Reader:
     def __init__(self, text: str) -> None:
         self._text = text
         self._told = Told(text)
+        #: How many relations there were before the sentence.
+        self._before = 0
         self.taken: list[Term] = []
 
     def read(self, sentence: Sequence[Said]) -> None:
         """Adds the relations of a sentence."""
+        self._before = len(self._told.relations)
         said = self._without_rows(turned_at_comma(sentence))
         waiting: list[Said] = []
         subjects: list[Term] = []
@@ -216,6 +219,8 @@ class _Reader:
             taken, self.taken = self.taken, []
             return taken
         if clause.subject.stands_for_several:
+            if clause.subject.bare and not named and 0 < self._before == len(self._told.relations):
+                raise unclear(clause.subject)  # "Red on blue. All in stack1."
             if len(named) == (clause.subject.exact or len(named)) and len(named) > 1:
                 return list(named)  # "red and blue, put them in stack1"
             return [*named, *self._told.all_named(clause.subject)]

@@ -61,7 +61,7 @@ def without_slip(word: str) -> str:
         return word
     slips = {word[:at] + word[at + 1] + word[at] + word[at + 2 :] for at in range(len(word) - 1)}
     found = slips & (_COMMON if len(word) > 3 else NUMBERS.keys())
-    if not found and len(word) >= 5:
+    if not found and len(word) >= 4:
         found = {
             word[:at] + word[at + 1 :] for at in range(1, len(word)) if word[at] == word[at - 1]
         } & _COMMON

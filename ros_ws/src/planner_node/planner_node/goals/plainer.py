@@ -29,8 +29,8 @@ class Plain:
     """A clause in plainer words, and what else it says.
 
     Attributes:
-        edge: "top" or "bottom" where it says that its subject is there; UPON where it says "on top",
-            of what was spoken of.
+        edge: "top" or "bottom" where it says that its subject is there; UPON for "on top" of what
+            was spoken of.
         adjacent: it says that left or right is meant of neighbouring places.
         of_object: it was told of what is its object now.
     """

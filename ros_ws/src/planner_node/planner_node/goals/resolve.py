@@ -83,13 +83,14 @@ def _resolve_term(term: Term, names: Sequence[str], stack_count: int | None) -> 
     """The one that is meant, or all that fit where it says how many of them."""
     if term.kind is Kind.THE:
         return (resolve_name(term.words, names, stack_count),)
+    left_out = {name for one in term.but for name in _resolve_term(one, names, stack_count)}
     if term.is_every_place:
         if stack_count is None:
             raise unknown_place(term.words, None)
-        return tuple(base_name(index) for index in range(stack_count))
+        every = (base_name(index) for index in range(stack_count))
+        return tuple(name for name in every if name not in left_out)
     if term.among:
         return tuple(resolve_name(words, names, stack_count) for words in term.among)
-    left_out = {name for one in term.but for name in _resolve_term(one, names, stack_count)}
     found = tuple(name for name in _fitting(term.words, names, stack_count) if name not in left_out)
     if term.exact is not None and len(found) != term.exact:
         raise AmbiguousObjectError(
@@ -172,6 +173,8 @@ def _told(
 ) -> str:
     """How a count is told: "exactly 3 of red_box, blue_box, … above stack1"."""
     number = f"exactly {least}" if least == most else f"at least {least}"
+    if 0 < least < most < len(subjects):
+        number = f"{least} to {most}"
     if least == 0:
         number = f"at most {most}"
     phrase = item.phrase
@@ -250,7 +253,7 @@ def _mended(parts: Sequence[str], known: set[str]) -> list[str]:
 
 def _means_nothing(part: str, known: frozenset[str]) -> bool:
     """Whether it is one of these with a typo; the shorter a word, the more it is like others."""
-    return len(part) > 3 and meant(part, known, _RIGHT) is not None
+    return part in known or (len(part) > 4 and meant(part, known, _RIGHT) is not None)
 
 
 def _shortened(part: str, known: set[str]) -> str | None:

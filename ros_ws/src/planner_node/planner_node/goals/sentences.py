@@ -4,13 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import takewhile
 from typing import Final
 
 from scene_graph import PREDICATES
 
+from ..errors import InvalidGoalError
 from .corrections import corrected, joined
 from .courtesy import says_nothing, without_courtesy
 from .language import (
+    CLEAR,
     EVERYONE,
     EXCEPT,
     HEADING,
@@ -20,6 +23,7 @@ from .language import (
     NOUN_VERBS,
     OPENINGS,
     PLURALS,
+    TAKES,
     meant,
 )
 from .merged import merged
@@ -31,6 +35,9 @@ from .tokens import parts_of
 from .towers import as_tower
 
 _BEFORE_OPENING: Final = (MUTE | HEADING) - {"this", "one", "two", "them"}
+#: Say in which order a tower is told.
+_TOLD_IN_ORDER: Final = ORDERS.keys() | {"bottom", "top"}
+_NO_NAMES: Final = MUTE | TAKES | CLEAR | {"elsewhere"}
 _NONE: Final = frozenset({"nothing", "no", "none"})
 _DENYING: Final = frozenset({NEGATION, "nothing", "none"})
 #: Say that a tower is what the heading before is about.
@@ -96,7 +103,22 @@ def _finished(clauses: Sequence[list[Words]]) -> list[list[Words]]:
         denied = any(item.text in _DENYING for item in clause) or (
             denied and not _has_phrase(clause)
         )
-    return as_tower([one for part in parts for one in told_apart(part)])
+    towers = as_tower([one for part in parts for one in told_apart(part)])
+    if not any(item.text in _TOLD_IN_ORDER for clause in towers for item in clause):
+        _check_order(clauses)
+    return towers
+
+
+def _check_order(clauses: Sequence[list[Words]]) -> None:
+    """Raises InvalidGoalError for "red in stack1, then blue": beside it, or on it?"""
+    for clause in clauses:
+        for number, item in enumerate(clause):
+            behind = list(takewhile(lambda one: one.text not in JOINS, clause[number + 1 :]))
+            related = _has_phrase(behind) or any(one.text in _NO_NAMES for one in behind)
+            if item.text == "then" and behind and not related:
+                raise InvalidGoalError(
+                    "say where this goes", behind[0].offset, " ".join(one.text for one in behind)
+                )
 
 
 def _has_phrase(clause: Sequence[Words]) -> bool:
