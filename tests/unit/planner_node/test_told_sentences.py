@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Goals as they are spoken: corrections, run-on names, exceptions, the rest, towers in any order."""
+"""Goals as they are spoken: corrections, names without commas, exceptions, towers in any order."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ def without_courtesy(words: Sequence[Words]) -> list[Words]:
     for at in range(min(frame, len(texts) - 1) - 1, 0, -1):
         wished = texts[at] == "if" and any(text in _WISHES for text in texts[:at])
         if wished or (texts[at] == "that" and "if" not in texts[:at]):
-            return kept[at + 1 :]
+            return without_courtesy(kept[at + 1 :])
     return kept
 
 

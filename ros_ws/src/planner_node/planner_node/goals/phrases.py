@@ -25,6 +25,7 @@ from .language import (
     SIDES,
     SYNONYMS,
     TAKES,
+    VERBS,
     meant,
 )
 from .terms import Words
@@ -64,7 +65,7 @@ def without_slip(word: str) -> str:
     if not found and len(word) >= 4:
         found = {
             word[:at] + word[at + 1 :] for at in range(1, len(word)) if word[at] == word[at - 1]
-        } & _COMMON
+        } & (_COMMON | VERBS)
     if not found and len(word) >= 4:
         found = {
             known
