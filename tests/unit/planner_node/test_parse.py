@@ -210,7 +210,7 @@ def test_an_unknown_verb_gets_a_sentence_that_shows_a_goal() -> None:
 
 @pytest.mark.parametrize(
     "name",
-    ["stack7", "stack 7", "stack_3", "stack-1", "place3", "place 3", "position-2", "column0"],
+    ["stack7", "stack 7", "stack_3", "stack-1", "place3", "place 3", "position-3", "column7"],
 )
 def test_fault_12_a_place_that_is_not_there_is_unknown_and_those_that_are_are_listed(
     name: str,

@@ -3,71 +3,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
-from scene_graph import PREDICATES, SHAPES, UP, Phrase
+from scene_graph import COLORS, PREDICATES, SHAPES
 
 from ..errors import InvalidGoalError
+from .around import WANTS, asker, names_a_place, verb_at_start, without_ends
 from .language import (
     CLEAR,
-    HEADING,
     IT,
+    MODALS,
+    MORE_COLORS,
     MUTE,
     NEGATION,
     NOUN_VERBS,
     NOUNS,
-    NUMBERS,
-    ORDERS,
+    SAME_PLACE,
     TAKES,
     meant,
 )
-from .phrases import RIGHT_WORDS, Found, find, phrases_in
+from .orders import ORDERS
+from .phrases import Found, find, phrases_in
 from .plainer import plainer
-from .sentences import end_of
-from .terms import Kind, Term, Words, term_of
+from .quantities import term_of
+from .said import Said, no_relation
+from .terms import Kind, Words
+from .unrelated import tower_heading, unrelated
 
-EXAMPLE: Final = "write relations like 'red on blue, green left of red'"
-
-_WANTS: Final = frozenset({"want", "wants"})
 _GOES: Final = frozenset({"go", "be", "sit", "stand", "come"})
+_AGAIN: Final = frozenset({"so", "neither", "nor"})
+_MODALS: Final = MODALS | {"is", "may", "can", "does", "do", "will"}
+#: What is not said of all may be said of some.
+_ALL: Final = frozenset({"all", "every", "each", "everything"})
 _ANY: Final = {"anything": "nothing", "any": "no"}
-_SKIPPED: Final = MUTE | TAKES | {NEGATION}
-
-
-@dataclass(frozen=True)
-class Said:
-    """What one clause says; a name without a relation has no links.
-
-    Attributes:
-        subject: None where the clause leaves it out.
-        links: phrases, whether each is negated, the object of each, and the words of the phrase.
-        takes: it only says what to take, as in "take red and put it on blue".
-        clears: it says of the name that nothing stands on it.
-        order: the names that follow are a tower or a row, see ``ORDERS``; None: they are not.
-        asks: it has a verb, but no relation, as in "on blue, put red".
-        edge: "top" or "bottom" where its subject is said to be there, of the place that is meant.
-        adjacent: it says "directly left of": the places are neighbours too.
-        of_object: it says of its object how many subjects it has: "stack1 has two blocks".
-    """
-
-    words: Sequence[Words]
-    subject: Term | None
-    links: tuple[tuple[Phrase, bool, Term, Words], ...] = ()
-    takes: bool = False
-    clears: bool = False
-    order: tuple[str, bool] | None = None
-    asks: bool = False
-    of_object: bool = False
-    edge: str | None = None
-    adjacent: bool = False
-
-    def denies(self, subjects: Sequence[Term]) -> bool:
-        """Whether its last relation does not hold: a list behind it then may go on."""
-        return bool(self.links) and (
-            self.links[-1][1] or all(subject.kind is Kind.NO for subject in subjects)
-        )
 
 
 def read_clause(text: str, words: list[Words]) -> Said:
@@ -78,6 +48,13 @@ def read_clause(text: str, words: list[Words]) -> Said:
         words = words[2:]
     if words[0].text == "can" and any(item.text in _GOES for item in words):
         words = words[1:]
+    if len(words) > 2 and words[0].text in _AGAIN and words[1].text in _MODALS:
+        return Said(words, term_of(words[2:]), again=words[0].text)
+    if words[-1].text == "too" and len(words) > 1:
+        words = words[:-1]
+        related = any(True for _ in find(words, PREDICATES.phrases))
+        if not related and not any(item.text in CLEAR for item in words):
+            return Said(words, term_of(words), again="so")
     if plain := plainer(words):
         said = read_clause(text, plain.words)
         if plain.adjacent and (len(said.links) != 1 or said.links[0][1]):
@@ -89,19 +66,24 @@ def read_clause(text: str, words: list[Words]) -> Said:
             of_object=plain.of_object or said.of_object,
         )
     if order := [item for item in words if item.text in ORDERS]:
-        return _tower(text, words, order[0])
+        return tower_heading(text, words, order[0])
     words, found = phrases_in(words)
     texts = [item.text for item in words]
     if not found:
-        return _without_phrase(text, words)
-    verb, first = _verb_at_start(words), found[0].first
-    verb = max(verb, _asker(words[:first]))
-    before = [item for item in words[verb:first] if item.text not in MUTE - NOUN_VERBS - _WANTS]
+        return unrelated(text, words)
+    verb, first = verb_at_start(words), found[0].first
+    verb = max(verb, asker(words[:first]))
+    _check_subject(words[verb:first])
+    before = [item for item in words[verb:first] if item.text not in MUTE - NOUN_VERBS - WANTS]
     negated = [item for item in before if item.text == NEGATION]
     before = [item for item in before if item.text != NEGATION]
-    if wants := [index for index, item in enumerate(before) if item.text in _WANTS]:
+    if wants := [index for index, item in enumerate(before) if item.text in WANTS]:
         # Who wants it is nothing that is on the table: "my students want red on blue".
         before = before[wants[-1] + 1 :] or before
+    if before and before[0].text in ("no", "nothing", "none"):
+        before = [item for item in before if item.text not in ("allowed", "permitted")]
+    if negated and before and before[0].text in _ALL and not _is_away(text, negated[0]):
+        raise InvalidGoalError("say 'no' for none of them", negated[0].offset, NEGATION)
     if negated and before and before[0].offset < negated[0].offset < before[-1].offset:
         # "the boxes not red"
         raise InvalidGoalError("it is not clear what 'not' is said of", negated[0].offset, NEGATION)
@@ -136,7 +118,7 @@ def read_clause(text: str, words: list[Words]) -> Said:
     read = []
     for item, denied, between, written in links:
         if not (len(between) == 1 and between[0].text in IT):
-            between = _without_ends(between)
+            between = without_ends(between)
         if not between:
             raise _missing("after", text, words, item)
         read.append((item.phrase, denied, term_of(between), written))
@@ -148,47 +130,29 @@ def read_clause(text: str, words: list[Words]) -> Said:
     return Said(words, subject, tuple(read))
 
 
-def _asker(words: Sequence[Words]) -> int:
-    """Where it is said who asks: "for the next trial we need red on blue"; 0 where nobody does."""
-    asker = [index for index, item in enumerate(words) if item.text in {"i", "we"} | _WANTS]
-    if not asker or any(item.text == NEGATION for item in words[: asker[-1]]):
-        return 0
-    return asker[-1]
+def _is_away(text: str, denial: Words) -> bool:
+    """Whether it was written "off", "out of" or "from": "everything off red"."""
+    return text[denial.offset : denial.stop].lower().startswith(("off", "out", "from"))
 
 
-def _verb_at_start(words: Sequence[Words]) -> int:
-    """How many words at the start ask and name nothing."""
-    index = 0
-    while index < len(words) and words[index].text in _SKIPPED:
-        rest = words[index + 1 :]
-        if words[index].text in NOUN_VERBS and _names_a_place(rest):
-            break
-        index += 1
-    # What is denied is looked for behind.
-    kept = [item for item in words[:index] if item.text == NEGATION]
-    return words.index(kept[0]) if kept else index
-
-
-def _names_a_place(rest: Sequence[Words]) -> bool:
-    """Whether "stack" or "place" in front of these words is a noun."""
-    if not rest or rest[0].text.isdigit() or rest[0].text in NUMBERS:
-        return True
-    phrases = PREDICATES.phrases
-    kept = tuple(item.text for item in rest if item.text not in ("is", "are"))
-    return any(kept[: len(phrase)] == phrase for phrase in phrases)
+def _check_subject(words: Sequence[Words]) -> None:
+    """Raises InvalidGoalError for "the one that is on blue": what is there now is not known."""
+    for noun, that, verb in zip(words, words[1:], words[2:]):
+        known = noun.text in NOUNS or noun.text in SHAPES or noun.text in {*COLORS, *MORE_COLORS}
+        if known and that.text in ("that", "which", "who") and verb.text in MUTE:
+            raise InvalidGoalError("say which block by its name", that.offset, that.text)
 
 
 def _turned(words: Sequence[Words]) -> tuple[list[Words], list[Words]] | None:
     """Object and subject of "on OBJECT put SUBJECT": on either side of a verb."""
-    if not words:
+    if not words or " ".join(item.text for item in words[:2]) in SAME_PLACE:
         return None
     if words[0].text in IT and (named := [item for item in words[1:] if item.text not in MUTE]):
         return [words[0]], named  # "on that the red one"
     verbs = [
         index
         for index, item in enumerate(words)
-        if item.text in MUTE
-        and not (item.text in NOUN_VERBS and _names_a_place(words[index + 1 :]))
+        if item.text in MUTE and not (item.text in NOUN_VERBS and names_a_place(words[index + 1 :]))
     ]
     for first in verbs:
         before = list(words[:first])
@@ -207,91 +171,7 @@ def _turned(words: Sequence[Words]) -> tuple[list[Words], list[Words]] | None:
     return None
 
 
-def _without_ends(words: Sequence[Words]) -> list[Words]:
-    """Without the words at either end that mean nothing."""
-    kept = list(words)
-    while kept and kept[-1].text in MUTE - NOUN_VERBS:
-        kept.pop()
-    while kept and kept[0].text in MUTE - NOUN_VERBS:
-        kept.pop(0)
-    return kept
-
-
-def _without_phrase(text: str, words: list[Words]) -> Said:
-    """A name, something to take, or something that is to be clear."""
-    taken = _taken(words)
-    if taken:
-        return Said(words, term_of(taken), takes=True)
-    clear = [item for item in words if item.text in CLEAR]
-    if not clear:
-        clear = [item for item in words[:2] if meant(item.text, CLEAR | RIGHT_WORDS) in CLEAR]
-    denied = any(item.text == NEGATION for item in words)
-    rest = [item for item in words if item not in clear]
-    start = max(_verb_at_start(rest), _asker(rest))
-    name = _without_ends(rest[start:])
-    asks = [item for item in rest if item.text in MUTE and item not in name]
-    if len(clear) == 1 and name and not denied:
-        return Said(words, term_of(name), clears=True)
-    if clear or denied or not name:
-        raise no_relation(text, words)
-    return Said(words, term_of(name), asks=bool(asks))
-
-
-def _tower(text: str, words: Sequence[Words], order: Words) -> Said:
-    """The heading of a tower, "from bottom to top in stack 1", and the first name behind it."""
-    rest = [
-        item for item in words if item is not order and item.text not in HEADING | MUTE - NOUN_VERBS
-    ]
-    found = list(find(rest, PREDICATES.phrases))
-    links: tuple[tuple[Phrase, bool, Term, Words], ...] = ()
-    if len(found) == 1:
-        # A place; behind it there may be the first name.
-        behind = rest[found[0].last :]
-        place = next((behind[:last] for last in (2, 1) if _is_place(behind[:last])), None)
-        if place is None:
-            raise no_relation(text, words)
-        links = ((found[0].phrase, False, term_of(place), order),)
-        rest = [*rest[: found[0].first], *behind[len(place) :]]
-    elif found:
-        raise no_relation(text, words)
-    subject = term_of(rest) if rest else None
-    return Said(words, subject, links, order=ORDERS[order.text])
-
-
-def _is_place(words: Sequence[Words]) -> bool:
-    return bool(words) and term_of(words).is_place
-
-
-def _taken(words: Sequence[Words]) -> list[Words]:
-    """What "take …" or "pick … up" says to take; empty for other clauses."""
-    for index, item in enumerate(words[:4]):
-        if item.text in TAKES:
-            name = list(words[index + 1 :])
-            return _without_ends(name) if name else []
-        if item.text not in MUTE and meant(item.text, MUTE | RIGHT_WORDS) not in MUTE:
-            break
-    return []
-
-
-def no_relation(text: str, words: Sequence[Words]) -> InvalidGoalError:
-    """The error of a part of a goal that relates nothing to nothing."""
-    start, end = words[0].offset, end_of(words)
-    return InvalidGoalError(
-        f"no relation found; known are {', '.join(_known())}; {EXAMPLE}", start, text[start:end]
-    )
-
-
 def _missing(side: str, text: str, words: Sequence[Words], item: Found) -> InvalidGoalError:
     written = words[item.first : item.last]
-    start, end = written[0].offset, end_of(written)
+    start, end = written[0].offset, written[-1].stop
     return InvalidGoalError(f"there is no block {side} this", start, text[start:end])
-
-
-def _known() -> Iterator[str]:
-    """One way to write each relation, its inverse, and its form for places."""
-    for name in PREDICATES:
-        predicate = PREDICATES[name]
-        yield from predicate.phrases[:1]
-        if name != UP:
-            yield from predicate.inverse_phrases[:1]
-            yield from predicate.place_phrases[:1]

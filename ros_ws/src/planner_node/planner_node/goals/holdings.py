@@ -6,7 +6,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from .language import HOLDS, MUTE, NEGATION, NOUN_VERBS, PLACE_NOUNS, PLURALS
+from scene_graph import PREDICATES
+
+from .language import CARRIES, HOLDS, IT, MUTE, NEGATION, NOUN_VERBS, PLACE_NOUNS, PLURALS
+from .phrases import find
 from .terms import Words, number_of
 
 _EVERY: Final = frozenset({"every", "each", "all"})
@@ -26,7 +29,11 @@ def as_relation(words: Sequence[Words]) -> list[Words] | None:
     Returns:
         "two blocks in stack1" for "stack1 has two blocks in it"; None where it is none of these.
     """
-    if found := _at(words, HOLDS):
+    carries = False
+    if found := _at(words, CARRIES):
+        carries = True
+        whose, held = list(words[:found]), list(words[found + 1 :])
+    elif found := _at(words, HOLDS):
         whose, held = list(words[:found]), list(words[found + 1 :])
     elif found := _at(words, _HIGHER):
         if len(words) < found + 3 or words[found + 1].text != "than":
@@ -48,10 +55,29 @@ def as_relation(words: Sequence[Words]) -> list[Words] | None:
             held = fewer
         inside = "at-top-of" if there[-1:] == ("top",) else "in"
         return [*held, Words(inside, held[0].offset), *place]
-    # "red has nothing on it": of blocks only what is on them.
-    if denied or not there or there[0] != "on":
+    # "red has nothing on it", "red carries blue", "red has blue below it".
+    if there and there[0] == "on":
+        held = [*held, Words("on", held[0].offset)]
+    elif beside := _related_to_it(held):
+        held = beside
+    elif carries:
+        held = [*held, Words("on", held[0].offset)]
+    else:
         return None
-    return [*held, Words("on", held[0].offset), *whose]
+    if denied:
+        fewer = _denied(held)
+        if fewer is None:
+            return None
+        held = fewer
+    return [*held, *whose]
+
+
+def _related_to_it(held: Sequence[Words]) -> list[Words] | None:
+    """ "blue below it" without "it"; None where it says no relation to it."""
+    found = list(find(held, PREDICATES.phrases))
+    if len(found) != 1 or found[0].last != len(held) - 1 or held[-1].text not in IT:
+        return None
+    return list(held[:-1]) if found[0].first else None
 
 
 def _at(words: Sequence[Words], known: frozenset[str]) -> int:
@@ -89,6 +115,8 @@ def _place(whose: Sequence[Words]) -> list[Words] | None:
 def _denied(held: Sequence[Words]) -> list[Words] | None:
     """ "at most two blocks" for "(not) more than two", "no blocks" for "(not) any blocks"."""
     first = held[0]
+    if first.text == "anything":
+        return [Words("nothing", first.offset, first.stop), *held[1:]]
     if first.text in ("any", "a", "an") and len(held) > 1:
         return [Words("no", first.offset, first.stop), *held[1:]]
     number = number_of(held[1].text) if len(held) > 1 else None

@@ -11,15 +11,14 @@ import difflib
 from collections.abc import Collection
 from typing import Final
 
-from scene_graph import LEFT, UP
-
 #: Verbs that are nouns too, where a number or a phrase follows: "stack 2 below red".
 NOUN_VERBS: Final = frozenset({"place", "stack", "position"})
 #: Ask for the relation that follows.
 VERBS: Final = NOUN_VERBS | {
     "put", "move", "set", "get", "bring", "lay", "drop", "leave", "keep", "shift", "push",
-    "slide", "transfer", "arrange", "build", "rest", "balance", "sit", "make", "let", "have",
-    "relocate", "stick", "add", "deposit", "carry", "placing", "putting", "moving", "stacking",
+    "slide", "transfer", "arrange", "build", "balance", "sit", "make", "let", "have",
+    "relocate", "stick", "add", "pop", "plop", "plonk", "chuck", "dump", "shove", "hoist",
+    "remove", "load", "deposit", "carry", "placing", "putting", "moving", "stacking",
 }  # fmt: skip
 #: Pick something up that the next clause calls "it".
 TAKES: Final = frozenset({"take", "grab", "lift", "pick", "fetch", "grasp", "get", "use"})
@@ -27,43 +26,56 @@ TAKES: Final = frozenset({"take", "grab", "lift", "pick", "fetch", "grasp", "get
 CLEAR: Final = frozenset({"clear", "empty", "free", "bare", "vacant", "unoccupied", "uncovered"})
 #: Mean nothing for the goal wherever they stand.
 MUTE: Final = VERBS | {
-    "is", "are", "be", "being", "stays", "stay", "sits", "sitting", "stands", "stand",
-    "standing", "rests", "resting", "goes", "go", "going", "lies", "lie", "lying", "placed",
-    "moved", "stacked", "located", "positioned", "should", "shall", "must", "has", "needs",
-    "need", "ought", "would", "will", "wants", "want", "come", "comes", "belongs", "belong",
-    "ends", "gets", "please", "kindly", "i", "we", "you", "me", "us", "like", "love", "prefer",
-    "now", "first", "finally", "also", "just", "simply", "so", "that", "there", "hey", "hi",
-    "hello", "robot", "ok", "okay", "thanks", "thx", "sure", "ensure", "were", "still", "again",
-    "too", "nice", "great", "your", "task", "goal", "next", "could", "wish", "maybe", "perhaps",
+    "is", "are", "be", "being", "stays", "stay", "sits", "sitting", "stands", "stand", "standing",
+    "rests", "resting", "goes", "go", "going", "lies", "lie", "lying", "placed", "moved",
+    "stacked", "located", "positioned", "should", "shall", "must", "has", "needs", "need",
+    "ought", "would", "will", "wants", "want", "come", "comes", "belongs", "belong", "ends",
+    "gets", "please", "kindly", "i", "we", "you", "me", "us", "like", "love", "prefer", "now",
+    "first", "finally", "also", "just", "simply", "so", "that", "there", "hey", "hi", "hello",
+    "robot", "ok", "okay", "thanks", "thx", "sure", "ensure", "were", "still", "again", "too",
+    "nice", "great", "your", "task", "goal", "next", "could", "wish", "maybe", "perhaps",
     "somewhere", "sir", "dear", "afterwards", "after", "quickly", "carefully", "gently", "do",
-    "does", "did", "try", "may", "might", "well", "as", "down", "anywhere", "today", "pls",
-    "plz", "pleas", "was", "secondly", "thirdly", "lastly", "together", "instead",
-    "itself", "themselves",
+    "does", "did", "try", "may", "might", "well", "as", "down", "anywhere", "today", "pls", "plz",
+    "pleas", "was", "secondly", "thirdly", "lastly", "together", "instead", "itself",
+    "themselves", "ask", "trouble", "think", "guess", "suppose", "see", "check", "confirm",
+    "verify", "am", "er", "erm", "um", "uh", "uhm", "really", "certain", "kind", "enough", "asap",
+    "quick", "pray", "rest", "suggest", "request", "strictly", "basically", "literally",
+    "definitely", "absolutely", "always", "completely", "totally", "ideally", "actual", "needing",
+    "slowly", "careful", "been", "found", "end", "kept", "stood", "sat", "put", "seen", "cheers",
+    "appreciate", "good", "grateful", "possible",
 }  # fmt: skip
 #: Join relations as a comma does.
-JOINS: Final = frozenset({"and", "adn", "then", "but", "while", "plus", "&"})
+JOINS: Final = frozenset(
+    {"and", "adn", "then", "but", "while", "plus", "&", "though", "although", "yet"}
+)
 #: Begin a relation after words that name nothing: "build a tower with red on blue".
-OPENINGS: Final = frozenset({"with", "where"})
-#: A clause of nothing else says nothing.
+OPENINGS: Final = frozenset({"with", "where", "whereby"})
+#: Polite on its own: a part of a goal of nothing else says nothing.
 POLITE: Final = frozenset({
     "please", "kindly", "hey", "hi", "hello", "robot", "ok", "okay", "thanks", "thx", "dear",
-    "sir", "now", "sure", "so", "well", "pleas", "plz", "pls", "hmm", "hm", "um", "uh", "oh", "ah",
+    "sir", "now", "sure", "so", "well", "pleas", "plz", "pls", "hmm", "hm", "um", "uh", "oh",
+    "ah", "uhm", "er", "erm", "alright", "right", "good", "morning", "afternoon", "evening",
+    "day", "cheers", "greetings", "yours", "sincerely", "faithfully", "regards", "best", "bye",
+    "goodbye", "obliged", "appreciated", "welcome", "madam", "friend", "buddy", "mate", "ta",
+    "ever", "thank", "again", "there", "asap", "quick", "quickly", "carefully", "gently",
+    "slowly", "careful", "everyone", "pray", "love", "sweetheart", "darling", "honey", "monsieur",
+    "mister", "miss", "boss", "pal", "dude", "guys", "folks", "professor", "doctor", "pardon",
+    "excuse", "many", "yes", "yeah", "yep", "very", "much", "advance", "time",
 })  # fmt: skip
 #: Words of a heading, as in "the goal for my class: red on blue"; all else before a colon counts.
 HEADING: Final = frozenset({
     "pile", "row", "line", "students", "student", "kids", "goal", "task", "tower",
     "arrangement", "setup", "configuration", "order", "plan", "target", "final", "my", "our",
     "for", "class", "demo", "experiment", "lesson", "a", "this", "one", "new", "layout",
-    "exercise", "of", "state", "sort", "like", "follows", "following", "them",
+    "exercise", "of", "state", "sort", "like", "follows", "following", "them", "required",
+    "desired", "wanted", "end", "result", "towers", "piles", "two", "step", "part",
+    "condition", "trial", "phase", "number", "nice", "high", "big", "tall", "little", "small",
+    "satisfy", "be", "request", "instructions", "instruction",
 })  # fmt: skip
-#: In which order a tower or a row is told: the relation of each to the one before, and whether the
-#: one before is its object.
-ORDERS: Final = {
-    "bottom-to-top": (UP, True),
-    "top-to-bottom": (UP, False),
-    "left-to-right": (LEFT, False),
-    "right-to-left": (LEFT, True),
-}
+#: Begin what says of all of a kind; "but" behind them leaves some out.
+EVERYONE: Final = frozenset({
+    "every", "each", "all", "everything", "any", "anything", "no", "nothing", "none", "both",
+})  # fmt: skip
 #: Every block that was not named before.
 OTHERS: Final = frozenset({"everything else", "all others", "others", "rest", "other ones"})
 #: No block that was not named before.
@@ -71,68 +83,87 @@ NOTHING_ELSE: Final = frozenset({
     "nothing else", "no other", "no others", "no other block", "no other blocks", "none other",
 })  # fmt: skip
 EXCEPT: Final = "except"
+#: Between what was said and what is meant instead.
+CORRECTION: Final = "correction"
+#: Takes back what was said last; what follows is new.
+TAKEN_BACK: Final = "taken-back"
 #: The two or three blocks that were named before.
-BOTH: Final = frozenset({"both", "they", "them", "these", "all three", "all four"})
+BOTH: Final = frozenset({"both", "they", "them", "these", "either-of-them"})
 #: The block that was named before.
-IT: Final = frozenset({"it", "this", "that"})
+IT: Final = frozenset({"it", "this", "that", "him", "her"})
+#: Where a block is said to be: "red on top".
+UPON: Final = "upon"
 EACH_OTHER: Final = frozenset({"each-other"})
 _PLACES: Final = ("stack", "tower", "place", "pile", "column")
 #: "in the same stack", "in different stacks"; a plural comes without its s.
 SAME_PLACE: Final = frozenset(f"same {place}" for place in _PLACES)
 DIFFERENT_PLACES: Final = frozenset(
-    f"{word} {place}" for word in ("different", "separate") for place in _PLACES
+    f"{word} {place}" for word in ("different", "separate", "distinct") for place in _PLACES
 )
 #: Behind a name and before a relation, looked for there with typos too.
 MODALS: Final = frozenset({
     "should", "shall", "must", "would", "stands", "standing", "sitting", "placed", "needs",
     "goes",
 })  # fmt: skip
-ALL_OF: Final = {"both": 2, "all three": 3, "all four": 4}
 ARTICLES: Final = frozenset({"the", "teh", "hte"})
 NEGATION: Final = "not"
 #: Words that hold a negation; with what is left of them.
 SHORT_NEGATIONS: Final = {
     "dont": "do", "isnt": "is", "shouldnt": "should", "never": "do", "cannot": "could",
-    "mustnt": "must", "without": "do",
+    "mustnt": "must", "without": "do", "arent": "is", "wont": "will", "wouldnt": "would",
+    "cant": "could", "dnt": "do", "doesnt": "does",
 }  # fmt: skip
 #: Number the steps, in front of a verb: "second, put red on blue"; elsewhere they name something.
 STEPS: Final = frozenset({"second", "third", "fourth", "fifth", "last"})
 #: Say of a place how many blocks are in it, of a block what is on it.
 HOLDS: Final = frozenset({"have", "has", "contain", "contains", "hold", "holds"})
 
+#: Say of a block what is on it.
+CARRIES: Final = frozenset({"carry", "carries", "bear", "bears", "support", "hold", "holds"})
+
 #: Fit every object.
-NOUNS: Final = frozenset({"block", "object", "one", "thing", "piece", "item", "brick"})
+NOUNS: Final = frozenset({
+    "block", "object", "one", "thing", "piece", "item", "brick", "part", "element",
+})  # fmt: skip
 #: Of several, what they are called one by one.
 PLURALS: Final = {
     "blocks": "block", "objects": "object", "ones": "one", "things": "thing", "pieces": "piece",
-    "items": "item", "bricks": "brick", "boxes": "box", "cubes": "cube", "cylinders": "cylinder",
+    "items": "item", "bricks": "brick", "parts": "part", "elements": "element",
+    "boxes": "box", "cubes": "cube", "cylinders": "cylinder",
     "spheres": "sphere", "balls": "ball", "prisms": "prism", "roofs": "roof", "cuboids": "cuboid",
     "stacks": "stack", "places": "place", "towers": "tower", "columns": "column", "piles": "pile",
     "positions": "position", "spots": "spot", "slots": "slot",
 }  # fmt: skip
 #: Other words for a shape or a colour, where no object is called so.
 SYNONYMS: Final = {
-    "cube": "box", "cuboid": "box", "ball": "sphere", "roof": "prism", "wedge": "prism",
-    "gray": "grey", "violet": "purple",
+    "cube": "box", "cuboid": "box", "bx": "box", "boks": "box", "ball": "sphere", "roof": "prism",
+    "wedge": "prism", "gray": "grey", "violet": "purple",
 }  # fmt: skip
 NUMBERS: Final = {
     "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7,
     "eight": 8, "nine": 9, "ten": 10,
 }  # fmt: skip
-#: Words that are right as they are, so that they are not taken for others with a typo.
-OTHER_WORDS: Final = frozenset({
+#: Colours beside those of :data:`scene_graph.COLORS`.
+MORE_COLORS: Final = frozenset({
     "white", "gold", "golden", "silver", "tan", "teal", "lime", "navy", "beige", "maroon",
     "olive", "turquoise", "indigo", "amber", "coral", "crimson", "scarlet", "rose", "ruby",
-    "plum", "lilac", "aqua", "azure", "bronze", "copper", "cream", "peach", "salmon", "tin",
-    "bed", "glue", "line", "back", "ink", "pine", "bin", "can", "them", "they", "their",
-    "there", "here", "these", "those", "which", "only", "same", "different",
-    "alone", "together", "either", "neither", "off",
-    "nothing", "none", "everything", "something", "anything", "order",
+    "plum", "lilac", "aqua", "azure", "bronze", "copper", "cream", "peach", "salmon",
 })  # fmt: skip
+#: Words that are right as they are, so that they are not taken for others with a typo.
+OTHER_WORDS: Final = MORE_COLORS | {
+    "light", "dark", "pale", "bright", "deep",
+    "tin", "bed", "glue", "line", "back", "ink", "pine", "bin", "can", "them", "they", "their",
+    "there", "here", "these", "those", "which", "than", "only", "same", "different", "alone",
+    "together", "either", "neither", "off", "nothing", "none", "everything", "something",
+    "anything", "order", "him", "her", "his", "its", "base", "peak", "single", "half", "mean",
+    "meant", "wait",
+}  # fmt: skip
 #: "the left stack", "the middle place"; with what they are called.
 SIDES: Final = {
     "left": "left", "leftmost": "left", "middle": "middle", "center": "middle", "centre": "middle",
-    "central": "middle", "right": "right", "rightmost": "right",
+    "central": "middle", "right": "right", "rightmost": "right", "left-hand": "left",
+    "right-hand": "right", "lefthand": "left", "righthand": "right", "left-most": "left",
+    "right-most": "right",
 }  # fmt: skip
 PLACE_NOUNS: Final = frozenset({
     "stack", "place", "position", "spot", "slot", "column", "pile", "tower",

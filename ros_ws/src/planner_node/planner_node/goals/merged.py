@@ -1,164 +1,118 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Several words of a goal that stand for others: "out of" is read as "not in"."""
+"""The words of a part of a goal with those that belong together as one."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
-#: "in the stack directly to the left of".
-_SIDE_BY_SIDE: Final = {
-    (*stack, how, *to, side, "of"): (f"just-{side}-of",)
-    for stack in ((), ("in", "stack"), ("in", "place"), ("in", "tower"))
-    for how in ("directly", "immediately", "just")
-    for to in ((), ("to",))
-    for side in ("left", "right")
-}
-#: Several words that stand for others, the longest first; looked for everywhere.
-MERGED: Final[dict[tuple[str, ...], tuple[str, ...]]] = _SIDE_BY_SIDE | {
-    ("i", "do", "not", "care", "which", "of", "two"): (),
-    ("in", "whatever", "order"): (),
-    ("that", "are", "not"): ("except",),
-    ("that", "is", "not"): ("except",),
-    ("which", "are", "not"): ("except",),
-    ("neither", "of"): ("no",),
-    ("no", "more", "then"): ("at-most",),
-    ("more", "then"): ("more-than",),
-    ("would", "be", "nice", "if"): (),
-    ("would", "be", "great", "if"): (),
-    ("would", "be", "good", "if"): (),
-    ("would", "be", "cool", "if"): (),
-    ("i", "would", "be", "happy", "if"): (),
-    ("i", "would", "be", "glad", "if"): (),
-    ("aswell",): (),
-    ("right", "at", "bottom"): ("at", "bottom"),
-    ("right", "at", "top"): ("at", "top"),
-    ("at", "top", "of"): ("at-top-of",),
-    ("at", "very", "top", "of"): ("at-top-of",),
-    ("in", "any", "order"): (),
-    ("order", "does", "not", "matter"): (),
-    ("let", "me", "think"): (),
-    ("let", "me", "see"): (),
-    ("thanks", "a", "lot"): (),
-    ("thank", "you", "very", "much"): (),
-    ("would", "you", "please"): (),
-    ("by", "itself"): ("alone",),
-    ("by", "themselves"): ("alone",),
-    ("on", "its", "own"): ("alone",),
-    ("off",): ("not", "on"),
-    ("off", "of"): ("not", "on"),
-    ("starting", "from", "bottom"): ("bottom-to-top",),
-    ("starting", "at", "bottom"): ("bottom-to-top",),
-    ("starting", "from", "top"): ("top-to-bottom",),
-    ("starting", "at", "top"): ("top-to-bottom",),
-    ("from", "bottom", "up"): ("bottom-to-top",),
-    ("from", "bottom", "upwards"): ("bottom-to-top",),
-    ("from", "top", "down"): ("top-to-bottom",),
-    ("from", "top", "downwards"): ("top-to-bottom",),
-    ("i", "do", "not", "care", "which", "ones"): (),
-    ("i", "do", "not", "care", "which", "one"): (),
-    ("i", "do", "not", "care", "which"): (),
-    ("it", "does", "not", "matter", "which"): (),
-    ("no", "matter", "which", "ones"): (),
-    ("no", "matter", "which"): (),
-    ("would", "like", "you", "to"): ("want",),
-    ("would", "like", "to", "see"): ("want",),
-    ("would", "like", "to", "have"): ("want",),
-    ("would", "like", "to"): ("want",),
-    ("would", "like"): ("want",),
-    ("asked", "for"): ("want",),
-    ("asks", "for"): ("want",),
-    ("each", "other"): ("each-other",),
-    ("one", "another"): ("each-other",),
-    ("nothing", "but"): ("only",),
-    ("nothing", "except"): ("only",),
-    ("nothing", "other", "than"): ("only",),
-    ("not", "more", "than"): ("at-most",),
-    ("more", "than"): ("more-than",),
-    ("fewer", "than"): ("fewer-than",),
-    ("less", "than"): ("fewer-than",),
-    ("at", "least"): ("at-least",),
-    ("at", "most"): ("at-most",),
-    ("no", "more", "than"): ("at-most",),
-    ("thank", "you"): (),
-    ("at", "end"): (),
-    ("can", "u"): (),
-    ("could", "u"): (),
-    ("so", "kind", "and"): (),
-    ("no", "matter", "where"): (),
-    ("is", "it", "possible", "to", "have"): (),
-    ("would", "it", "be", "possible", "to"): (),
-    ("would", "you", "mind"): (),
-    ("ended", "up"): (),
-    ("make", "it", "so", "that"): ("make",),
-    ("it", "would", "be", "great", "if"): (),
-    ("it", "would", "be", "nice", "if"): (),
-    ("it", "would", "be", "good", "if"): (),
-    ("from", "left", "to", "right"): ("left-to-right",),
-    ("from", "right", "to", "left"): ("right-to-left",),
-    ("except", "for"): ("except",),
-    ("apart", "from"): ("except",),
-    ("from", "bottom", "to", "top"): ("bottom-to-top",),
-    ("bottom", "to", "top"): ("bottom-to-top",),
-    ("from", "top", "to", "bottom"): ("top-to-bottom",),
-    ("top", "to", "bottom"): ("top-to-bottom",),
-    ("at", "lest"): ("at-least",),
-    ("not", "allowed"): ("not",),
-    ("not", "allowed", "to"): ("not",),
-    ("not", "supposed", "to"): ("not",),
-    ("out", "of"): ("not", "in"),
-    ("both", "of", "them"): ("both",),
-    ("them", "both"): ("both",),
-    ("all", "two"): ("both",),
-    ("all", "three", "of", "them"): ("all", "three"),
-    ("in", "end"): (),
-    ("after", "that"): (),
-    ("final", "arrangement"): (),
-    ("final", "state"): (),
-    ("goal", "state"): (),
-    ("ontop",): ("on", "top"),
-    ("can", "you"): (),
-    ("can", "i"): (),
-    ("can", "we"): (),
-    ("can", "be"): ("be",),
-    ("of", "course"): (),
-    ("as", "well"): (),
-    ("for", "me"): (),
-    ("ends", "up"): (),
-    ("end", "up"): (),
-    ("pick", "up"): ("take",),
-    ("lift", "up"): ("take",),
-    ("free", "up"): ("clear",),
-    ("clear", "off"): ("clear",),
-    ("clear", "out"): ("clear",),
-    ("to", "be"): ("be",),
-    ("to", "have"): ("have",),
-    ("to", "see"): ("have",),
-    ("to", "go"): ("be",),
-    ("to", "sit"): ("be",),
-    ("to", "stand"): ("be",),
-    ("has", "to"): ("must",),
-    ("have", "to"): ("must",),
-    ("needs", "to"): ("must",),
-    ("need", "to"): ("must",),
-    ("ought", "to"): ("must",),
-    ("like", "you", "to"): ("like",),
-    ("want", "you", "to"): ("want",),
-    ("need", "you", "to"): ("want",),
-    ("try", "to"): (),
-    ("in", "a", "way", "that"): (),
-    ("so", "kind", "to"): (),
-    ("so", "kind", "as", "to"): (),
-    ("it", "is", "necessary", "that"): (),
-    ("it", "is", "important", "that"): (),
-    ("atleast",): ("at-least",),
-    ("atmost",): ("at-most",),
-    ("such", "that"): (),
-    ("build", "a", "tower"): ("build",),
-    ("make", "a", "tower"): ("build",),
-    ("build", "a", "stack"): ("build",),
-    ("make", "a", "stack"): ("build",),
-    ("second", "stack", "from", "left"): ("stack", "1"),
-    ("third", "stack", "from", "left"): ("stack", "2"),
-    ("second", "place", "from", "left"): ("stack", "1"),
-    ("third", "place", "from", "left"): ("stack", "2"),
-}  # fmt: skip
+from .language import ARTICLES, HOLDS, JOINS, MUTE, NOUN_VERBS, TAKES
+from .orders import order_at
+from .places import place_at
+from .terms import Words, number_of
+from .wordings import MERGED
+
+_LONGEST: Final = max(map(len, MERGED))
+
+
+def merged(words: Sequence[Words]) -> list[Words]:
+    """With several words that stand for others replaced, the longest first; without articles."""
+    words = list(_without_articles(words))
+    result: list[Words] = []
+    index, removing = 0, False
+    while index < len(words):
+        before = result[-1].text if result else ""
+        removing = removing or words[index].text in ("remove", "removing", "removed")
+        found, used = _at(words[index:], before, removing)
+        result += found
+        index += used
+    return result
+
+
+def _at(words: Sequence[Words], before: str, removing: bool) -> tuple[list[Words], int]:
+    """What some words begin with, as it is read, and how many words it is.
+
+    Args:
+        before: the word in front.
+        removing: "remove" is in front, so that "from" says where something is not to be.
+    """
+    for length in range(min(_LONGEST, len(words)), 0, -1):
+        texts = tuple(item.text for item in words[:length])
+        if texts in MERGED:
+            offset, stop = words[0].offset, words[length - 1].stop
+            return [Words(text, offset, stop) for text in MERGED[texts]], length
+    texts = tuple(item.text for item in words)
+    if texts[0] == "rest" and (not before or before in JOINS):
+        return [Words("others", words[0].offset, words[0].stop)], 1
+    if order := order_at(texts, before):
+        name, used = order
+        return [Words(name, words[0].offset, words[used - 1].stop)], used
+    if place := place_at(words, before):
+        return place
+    if between := _between(texts):
+        text, used = between
+        return [Words(text, words[0].offset, words[used - 1].stop)], used
+    if away := _away(words, removing):
+        return away
+    if texts[:2] == ("up", "to") and number_of(" ".join(texts[2:3])) is not None:
+        return [Words("at-most", words[0].offset, words[1].stop)], 2
+    if texts[0] == "to" and len(texts) > 1 and _is_verb(texts[1:]):
+        return [], 1  # "I want you to put red on blue"
+    return [words[0]], 1
+
+
+def _away(words: Sequence[Words], removing: bool) -> tuple[list[Words], int] | None:
+    """ "off blue" as "not on blue", "off stack 1" as "not in stack 1"; None for other words."""
+    texts = [item.text for item in words[:4]]
+    used = 0
+    if texts[0] == "off":
+        used = 1 + (texts[1:2] == ["of"])
+    elif texts[0] == "from" and removing:
+        used = 3 if texts[1:3] == ["top", "of"] else 1
+    if not used or used == len(words):
+        return None
+    behind = words[used : used + 3]
+    named = place_at(behind) or any(
+        Words(" ".join(item.text for item in behind[:last]), 0).is_place for last in (1, 2)
+    )
+    offset, stop = words[0].offset, words[used - 1].stop
+    inside = "in" if named else "on"
+    return [Words("not", offset, stop), Words(inside, offset, stop)], used
+
+
+def _is_verb(texts: Sequence[str]) -> bool:
+    """Whether "to" in front of these words is no relation."""
+    if texts[0] in NOUN_VERBS:
+        return len(texts) > 1 and number_of(texts[1]) is None and texts[1] != "number"
+    return texts[0] in MUTE | TAKES | HOLDS
+
+
+def _between(texts: Sequence[str]) -> tuple[str, int] | None:
+    """ "between two and three", "two or three" as one number; None where it is none."""
+    start = int(texts[0] == "between")
+    if len(texts) < start + 3 or texts[start + 1] not in ("and", "or", "to"):
+        return None
+    low, high = number_of(texts[start]), number_of(texts[start + 2])
+    if low is None or high is None or low >= high:
+        return None
+    if not start and (texts[start + 1] != "or" or high != low + 1):
+        return None
+    return f"{low}-to-{high}", start + 3
+
+
+def _without_articles(words: Sequence[Words]) -> list[Words]:
+    """ "the two boxes" as "all two boxes"; "the only box" keeps its article, all others go."""
+    result: list[Words] = []
+    for index, item in enumerate(words):
+        if item.text == "rest" and index and words[index - 1].text in ARTICLES:
+            result.append(Words("others", item.offset, item.stop))
+            continue
+        if item.text not in ARTICLES:
+            result.append(item)
+            continue
+        behind = words[index + 1].text if index + 1 < len(words) else ""
+        if (number_of(behind) or 0) > 1:
+            result.append(Words("all", item.offset, item.stop))
+        elif behind == "only":
+            result.append(Words("the-", item.offset, item.stop))
+    return result

@@ -6,7 +6,7 @@ from __future__ import annotations
 from scene_graph import PREDICATES, Phrase
 
 from ..errors import InvalidGoalError
-from .clauses import EXAMPLE
+from .said import EXAMPLE
 from .terms import Term
 
 

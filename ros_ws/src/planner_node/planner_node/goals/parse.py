@@ -17,11 +17,12 @@ from typing import Final
 from scene_graph import PREDICATES, UP, Phrase
 
 from ..errors import InvalidGoalError
-from .clauses import EXAMPLE, Said, no_relation, read_clause
-from .language import ALL_OF, BOTH, IT
-from .lists import is_listed, row_of, turned_at_comma
+from .clauses import read_clause
+from .language import BOTH, IT
+from .lists import is_listed, place_of, row_before, row_of, turned_at_comma
 from .objections import unclear, untold
 from .parsed import ParsedRelation
+from .said import EXAMPLE, Said, no_relation
 from .sentences import is_heading, sentences
 from .terms import Kind, Term, Words
 from .told import Told
@@ -57,17 +58,14 @@ class _Reader:
     def __init__(self, text: str) -> None:
         self._text = text
         self._told = Told(text)
+        #: How many relations there were before the sentence.
+        self._before = 0
         self.taken: list[Term] = []
 
     def read(self, sentence: Sequence[Said]) -> None:
         """Adds the relations of a sentence."""
-        said = turned_at_comma(sentence)
-        for number, clause in enumerate(said):
-            if clause.order is not None:
-                names, rest = row_of(said[number + 1 :])
-                self._read_row(clause, clause.order, names)
-                said = [*(other for other in said[:number] if not is_heading(other.words)), *rest]
-                break
+        self._before = len(self._told.relations)
+        said = self._without_rows(turned_at_comma(sentence))
         waiting: list[Said] = []
         subjects: list[Term] = []
         last: Said | None = None
@@ -76,6 +74,9 @@ class _Reader:
             named = [other.subject for other in waiting if other.subject is not None]
             if clause.takes and is_listed(said[number + 1 :]):
                 clause = replace(clause, takes=False)  # "get red and blue into stack 0"
+            if clause.again:
+                self._told.add_again(clause)
+                continue
             if clause.takes:
                 if waiting or self.taken:
                     raise no_relation(self._text, clause.words)
@@ -85,7 +86,10 @@ class _Reader:
             if clause.clears:
                 assert clause.subject is not None
                 subjects, waiting, last = [clause.subject], [], clause
-                for term in (*named, clause.subject):
+                spoken = [*named, clause.subject]
+                if clause.subject.stands_for_several:
+                    spoken = named or self._told.all_named(clause.subject)
+                for term in spoken:
                     self._told.clear(self._told.meant(term, None))
                 self._told.subjects, self._told.object = subjects, None
                 continue
@@ -136,6 +140,22 @@ class _Reader:
             raise no_relation(self._text, waiting[0].words)
         if self.taken and last is not None:
             raise untold(self.taken[0])
+
+    def _without_rows(self, said: list[Said]) -> list[Said]:
+        """What is left of a sentence without a tower or a row, whose relations are added."""
+        for number, clause in enumerate(said):
+            if clause.order is None:
+                continue
+            before = [other for other in said[:number] if not is_heading(other.words)]
+            names, rest = row_of(said[number + 1 :])
+            heading = clause
+            if not names:
+                before, heading, names = row_before(before, clause)
+            if rest and (standing := place_of(rest[0])):
+                heading, rest = replace(heading, links=(*heading.links, standing)), rest[1:]
+            self._read_row(heading, clause.order, names)
+            return [*before, *rest]
+        return said
 
     def _read_row(self, heading: Said, order: tuple[str, bool], names: Sequence[Said]) -> None:
         """The relations of "from bottom to top in stack 1: red, green, blue"."""
@@ -198,14 +218,14 @@ class _Reader:
         if clause.subject.words.text in pronoun and self.taken and not named:
             taken, self.taken = self.taken, []
             return taken
-        if (
-            clause.subject.words.text in BOTH
-            and len(named) == ALL_OF.get(clause.subject.words.text, len(named))
-            and len(named) > 1
-        ):
-            return list(named)  # "red and blue, put them in stack1"
-        if clause.subject.words.text in BOTH:
+        if clause.subject.stands_for_several:
+            if clause.subject.bare and not named and 0 < self._before == len(self._told.relations):
+                raise unclear(clause.subject)  # "Red on blue. All in stack1."
+            if len(named) == (clause.subject.exact or len(named)) and len(named) > 1:
+                return list(named)  # "red and blue, put them in stack1"
             return [*named, *self._told.all_named(clause.subject)]
+        if clause.subject.words.text in IT and len(named) == 1:
+            return list(named)  # "the red box, it goes on blue"
         if clause.subject.words.text in _WHICH and not named:
             if (
                 self._told.object is None
@@ -214,4 +234,4 @@ class _Reader:
             ):
                 raise unclear(clause.subject)
             return [self._told.object]
-        return [*named, self._told.meant(clause.subject, None)]
+        return [*named, self._told.meant(clause.subject, None, again=bool(clause.links))]

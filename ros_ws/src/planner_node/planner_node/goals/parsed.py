@@ -45,9 +45,15 @@ def in_one_place(blocks: Sequence[Term], same: bool, denied: bool) -> list[Parse
         None where it is not clear what is meant: of three that are not in the same stack, two may
         be.
     """
-    if any(term.kind is not Kind.THE or term.is_place for term in blocks) or len(blocks) < 2:
-        return None
-    if len(blocks) > 2 and denied:
+    if len(blocks) == 1 and blocks[0].kind is Kind.EVERY and not blocks[0].is_place:
+        if denied and blocks[0].exact != 2:
+            return None
+        blocks = [blocks[0], blocks[0]]  # "the red ones in the same stack"
+    elif (
+        len(blocks) < 2
+        or any(term.kind is not Kind.THE or term.is_place for term in blocks)
+        or (len(blocks) > 2 and denied)
+    ):
         return None
     # In one stack are those of which none is left of the other.
     predicate = PREDICATES[LEFT if same != denied else ABOVE]
@@ -63,11 +69,7 @@ def none_but(
     """That nothing but the subjects has a relation: "only red in stack1"; None: it is not clear."""
     if denied or any(term.kind is not Kind.THE for term in subjects) or not object_.is_place:
         return None
-    others = Term(
-        Words("block", subjects[0].words.offset),
-        Kind.EVERY,
-        but=tuple(subject.words for subject in subjects),
-    )
+    others = Term(Words("block", subjects[0].words.offset), Kind.EVERY, but=tuple(subjects))
     if phrase.predicate.name == UP:
         phrase = Phrase(PREDICATES[ABOVE])  # "only red on stack1"
     return ParsedRelation(others, phrase, object_, negated=True)

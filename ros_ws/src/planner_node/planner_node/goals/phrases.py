@@ -11,7 +11,9 @@ from scene_graph import COLORS, PREDICATES, SHAPES, Phrase
 
 from .language import (
     ARTICLES,
+    CARRIES,
     CLEAR,
+    HOLDS,
     JOINS,
     MUTE,
     NOUNS,
@@ -23,10 +25,11 @@ from .language import (
     SIDES,
     SYNONYMS,
     TAKES,
+    VERBS,
     meant,
 )
-from .merged import MERGED
 from .terms import Words
+from .wordings import MERGED
 
 #: Words of phrases that a typo is looked for; the shorter ones are like too much.
 _TYPED_WRONG: Final = frozenset({
@@ -35,13 +38,14 @@ _TYPED_WRONG: Final = frozenset({
 })  # fmt: skip
 #: Words that are right as they are.
 RIGHT_WORDS: Final = frozenset().union(
+    HOLDS, CARRIES,
     COLORS, SHAPES, NOUNS, MUTE, OPENINGS, CLEAR, TAKES, OTHER_WORDS, JOINS, PLURALS, SYNONYMS,
     NUMBERS, {"not", "it", "of", "no"},
 )  # fmt: skip
 _Phrases = Mapping[tuple[str, ...], Phrase]
 
 #: Words that a slip of the fingers is looked for in every word.
-_COMMON: Final = frozenset(
+_COMMON: Final = {"neither", "nothing", "everything", "different"} | frozenset(
     word
     for word in RIGHT_WORDS.union(*MERGED, *PREDICATES.phrases, PLACE_NOUNS, SIDES) - OTHER_WORDS
     if len(word) >= 4 and word.isalpha() and word not in COLORS and word not in SHAPES
@@ -54,15 +58,15 @@ def without_slip(word: str) -> str:
 
     Another letter in its place is no slip: that makes other words of it.
     """
-    if len(word) < 4 or word in _NO_SLIP or not word.isalpha():
+    if len(word) < 3 or word in _NO_SLIP or not word.isalpha():
         return word
     slips = {word[:at] + word[at + 1] + word[at] + word[at + 2 :] for at in range(len(word) - 1)}
-    found = slips & _COMMON
-    if not found and len(word) >= 5:
+    found = slips & (_COMMON if len(word) > 3 else NUMBERS.keys())
+    if not found and len(word) >= 4:
         found = {
             word[:at] + word[at + 1 :] for at in range(1, len(word)) if word[at] == word[at - 1]
-        } & _COMMON
-    if not found and len(word) >= 5:
+        } & (_COMMON | VERBS)
+    if not found and len(word) >= 4:
         found = {
             known
             for known in _COMMON

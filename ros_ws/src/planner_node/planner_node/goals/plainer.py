@@ -7,14 +7,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from scene_graph import PREDICATES
+
+from .described import by_place
 from .holdings import as_relation
-from .language import STEPS, TAKES, VERBS
-from .terms import Words
+from .language import EXCEPT, STEPS, TAKES, UPON, VERBS
+from .phrases import find
+from .terms import Words, number_of
 
 _EDGES: Final = (
     ("at", "top"), ("at", "very", "top"), ("on", "very", "top"), ("at", "bottom"),
-    ("at", "very", "bottom"), ("on", "very", "bottom"),
+    ("at", "very", "bottom"), ("on", "very", "bottom"), ("on", "top"),
 )  # fmt: skip
+_NEIGHBOURS: Final = frozenset({"adjacent", "neighbours", "neighbors", "neighbouring"})
+_SIDE_BY_SIDE: Final = ("next", "to", "each-other")
 _JUST: Final = {"just-left-of": "left", "just-right-of": "right"}
 
 
@@ -23,7 +29,8 @@ class Plain:
     """A clause in plainer words, and what else it says.
 
     Attributes:
-        edge: "top" or "bottom" where it says that its subject is there.
+        edge: "top" or "bottom" where it says that its subject is there; UPON for "on top" of what
+            was spoken of.
         adjacent: it says that left or right is meant of neighbouring places.
         of_object: it was told of what is its object now.
     """
@@ -50,11 +57,34 @@ def plainer(words: Sequence[Words]) -> Plain | None:
             where = words[at]
             phrase = [Words(side, where.offset, where.stop), Words("of", where.stop)]
             return Plain([*words[:at], *phrase, *words[at + 1 :]], adjacent=True)
+    if told := _except_behind(words):
+        return Plain(told)
+    if described := by_place(words):
+        return Plain(described[0], edge=described[1])
+    if texts[-1] in _NEIGHBOURS and len(texts) > 1:
+        end = words[-1]
+        return Plain([*words[:-1], *(Words(text, end.offset, end.stop) for text in _SIDE_BY_SIDE)])
+    if texts[-1] in ("at-least", "at-most") and number_of(texts[0]) is not None:
+        return Plain([words[-1], *words[:-1]])  # "one block in every stack at least"
     if texts[-1] == "either" and len(words) > 1:
         return Plain(list(words[:-1]))
     for ending in _EDGES:
         if tuple(texts[-len(ending) :]) == ending and len(words) > len(ending):
-            return Plain(list(words[: -len(ending)]), edge=ending[-1])
+            edge = UPON if ending == ("on", "top") else ending[-1]
+            return Plain(list(words[: -len(ending)]), edge=edge)
     if held := as_relation(words):
         return Plain(held, of_object=True)
     return None
+
+
+def _except_behind(words: Sequence[Words]) -> list[Words] | None:
+    """ "everything in stack1 except red" with whom it leaves out behind "everything"."""
+    at = next((index for index, item in enumerate(words) if item.text == EXCEPT), 0)
+    found = list(find(words[:at], PREDICATES.phrases))
+    if not found or not found[0].first:
+        return None
+    first = found[0].first
+    if words[first - 1].text == "nothing":
+        only = Words("only", words[first - 1].offset, words[at].stop)
+        return [*words[: first - 1], only, *words[at + 1 :], *words[first:at]]
+    return [*words[:first], *words[at:], *words[first:at]]

@@ -19,12 +19,10 @@ from scene_graph import (
     UP,
     Phrase,
     Relation,
-    base_index,
     base_name,
 )
 
 from ..errors import AmbiguousObjectError, InvalidGoalError, UnknownObjectError
-from .clauses import EXAMPLE
 from .goal import Count, Goal
 from .language import (
     CLEAR,
@@ -39,13 +37,10 @@ from .language import (
     meant,
 )
 from .parsed import ParsedRelation
+from .resolve_places import is_place_word, place_named, unknown_place
+from .said import EXAMPLE
 from .terms import Kind, Term, Words
 
-#: What people call a place, with or without a number; only ``stack0`` … are places.
-_PLACE: Final = re.compile(
-    r"(stack|place|position|spot|slot|column|pile|tower|base)s?[ _-]*\d*"
-    r"|table|tabletop|floor|ground|desk|surface"
-)
 #: Left out of a name where they were typed wrong.
 _LEFT_OUT: Final = frozenset(MUTE) | {"the"}
 #: No typos of what is in the scene.
@@ -88,14 +83,23 @@ def _resolve_term(term: Term, names: Sequence[str], stack_count: int | None) -> 
     """The one that is meant, or all that fit where it says how many of them."""
     if term.kind is Kind.THE:
         return (resolve_name(term.words, names, stack_count),)
+    left_out = {name for one in term.but for name in _resolve_term(one, names, stack_count)}
     if term.is_every_place:
         if stack_count is None:
-            raise _unknown_place(term.words, None)
-        return tuple(base_name(index) for index in range(stack_count))
+            raise unknown_place(term.words, None)
+        every = (base_name(index) for index in range(stack_count))
+        return tuple(name for name in every if name not in left_out)
     if term.among:
         return tuple(resolve_name(words, names, stack_count) for words in term.among)
-    left_out = {resolve_name(words, names, stack_count) for words in term.but}
-    return tuple(name for name in _fitting(term.words, names, stack_count) if name not in left_out)
+    found = tuple(name for name in _fitting(term.words, names, stack_count) if name not in left_out)
+    if term.exact is not None and len(found) != term.exact:
+        raise AmbiguousObjectError(
+            term.words.text,
+            found,
+            f"at offset {term.words.offset}: not {term.exact} but {len(found)} are called "
+            f"'{term.words.text}': {', '.join(found)}; name the ones that are meant",
+        )
+    return found
 
 
 def _meanings(
@@ -169,6 +173,8 @@ def _told(
 ) -> str:
     """How a count is told: "exactly 3 of red_box, blue_box, … above stack1"."""
     number = f"exactly {least}" if least == most else f"at least {least}"
+    if 0 < least < most < len(subjects):
+        number = f"{least} to {most}"
     if least == 0:
         number = f"at most {most}"
     phrase = item.phrase
@@ -204,7 +210,7 @@ def resolve_name(words: Words, names: Sequence[str], stack_count: int | None = N
 
 def _fitting(words: Words, names: Sequence[str], stack_count: int | None) -> list[str]:
     """All that a name fits; raises UnknownObjectError where that is nothing."""
-    place = _place_named(words, stack_count)
+    place = place_named(words, stack_count)
     if place is not None:
         return [place]
     by_full_name = {name.lower(): name for name in names}
@@ -217,8 +223,8 @@ def _fitting(words: Words, names: Sequence[str], stack_count: int | None) -> lis
         candidates = sorted(name for name in names if wanted <= set(name.lower().split("_")))
         if candidates and mended:
             return candidates
-    if _PLACE.fullmatch(words.text):
-        raise _unknown_place(words, stack_count)
+    if is_place_word(words.text):
+        raise unknown_place(words, stack_count)
     raise _unknown_object(words, parts, names, known)
 
 
@@ -228,16 +234,40 @@ def _mended(parts: Sequence[str], known: set[str]) -> list[str]:
     In front there may be a verb, behind a "should" or "please", typed wrong; in between nothing is
     left out.
     """
-    right = [meant(part, known | NOUNS | SYNONYMS.keys(), _RIGHT) for part in parts]
+    right = [
+        meant(part, known | NOUNS | SYNONYMS.keys(), _RIGHT) or _shortened(part, known)
+        for part in parts
+    ]
     first, last = 0, len(parts)
-    while first < last and right[first] is None and meant(parts[first], _LEFT_OUT, _RIGHT):
+    while first < last and right[first] is None and _means_nothing(parts[first], _LEFT_OUT):
         first += 1
     while (
-        first < last and right[last - 1] is None and meant(parts[last - 1], MODALS | POLITE, _RIGHT)
+        first < last
+        and right[last - 1] is None
+        and _means_nothing(parts[last - 1], MODALS | POLITE)
     ):
         last -= 1
     kept = [word or part for word, part in zip(right[first:last], parts[first:last])]
     return [one for part in kept for one in _apart(part, known)]
+
+
+def _means_nothing(part: str, known: frozenset[str]) -> bool:
+    """Whether it is one of these with a typo; the shorter a word, the more it is like others."""
+    return part in known or (len(part) > 4 and meant(part, known, _RIGHT) is not None)
+
+
+def _shortened(part: str, known: set[str]) -> str | None:
+    """The one word of which letters were left out: "yel" or "ylw" for "yellow"."""
+    if len(part) < 3 or part in _RIGHT:
+        return None
+    found = [word for word in known if word[0] == part[0] and _in_order(part, word)]
+    return found[0] if len(found) == 1 else None
+
+
+def _in_order(letters: str, word: str) -> bool:
+    """Whether a word has these letters in this order."""
+    rest = iter(word)
+    return all(letter in rest for letter in letters)
 
 
 def _apart(part: str, known: set[str]) -> list[str]:
@@ -246,21 +276,6 @@ def _apart(part: str, known: set[str]) -> list[str]:
         if part not in known and part.startswith(word) and part.removeprefix(word) in known | NOUNS:
             return [word, part.removeprefix(word)]
     return [part]
-
-
-def _place_named(words: Words, stack_count: int | None) -> str | None:
-    base = words.base
-    if base is not None:
-        index = base_index(base)
-        if stack_count is not None and index is not None and index >= stack_count:
-            raise _unknown_place(words, stack_count)
-        return base
-    side = words.side
-    if side is None:
-        return None
-    if stack_count is None or (side == "middle" and stack_count % 2 == 0):
-        raise _unknown_place(words, stack_count)
-    return base_name({"left": 0, "middle": stack_count // 2, "right": stack_count - 1}[side])
 
 
 def _unknown_object(
@@ -281,21 +296,4 @@ def _unknown_object(
         words.text,
         sorted(names),
         f"at offset {words.offset}: there is no '{words.text}'; {listed}{hint}",
-    )
-
-
-def _unknown_place(words: Words, stack_count: int | None) -> UnknownObjectError:
-    """What to say of a name that looks like a place and is none."""
-    if stack_count is None:
-        known: tuple[str, ...] = ()
-        listed = f"places are called {base_name(0)}, {base_name(1)}, … from the left"
-    else:
-        known = tuple(base_name(index) for index in range(stack_count))
-        listed = f"the places are {', '.join(known)} from the left"
-    numbered = re.search(r"\d", words.text)
-    example = "" if numbered else f"; write which one, such as 'red on {base_name(0)}'"
-    return UnknownObjectError(
-        words.text,
-        known,
-        f"at offset {words.offset}: there is no place '{words.text}'; {listed}{example}",
     )

@@ -3,78 +3,122 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
+from itertools import takewhile
 from typing import Final
 
 from scene_graph import PREDICATES
 
 from ..errors import InvalidGoalError
+from .corrections import corrected, joined
+from .courtesy import says_nothing, without_courtesy
 from .language import (
-    ARTICLES,
+    CLEAR,
+    EVERYONE,
+    EXCEPT,
     HEADING,
     JOINS,
     MUTE,
     NEGATION,
     NOUN_VERBS,
-    NUMBERS,
     OPENINGS,
-    ORDERS,
-    PLACE_NOUNS,
-    POLITE,
-    SHORT_NEGATIONS,
-    SIDES,
+    PLURALS,
+    TAKES,
     meant,
 )
-from .merged import MERGED
-from .phrases import RIGHT_WORDS, find, without_slip
+from .merged import merged
+from .orders import ORDERS
+from .phrases import RIGHT_WORDS, find
+from .run_on import told_apart
 from .terms import Words
+from .tokens import parts_of
+from .towers import as_tower
 
-_TOKEN: Final = re.compile(
-    r"(?P<word>[^\W_](?:[\w-]|['’](?=\w))*|&)|(?P<end>[.;!?])|(?P<comma>[,:])"
-    r"|(?P<arrow>[-=]+>|→)|(?P<dash>[-–—]+(?=\s))|(?P<other>\S)"
-)
-_YOU: Final = frozenset({"would", "could", "will", "can", "you"})
+_BEFORE_OPENING: Final = (MUTE | HEADING) - {"this", "one", "two", "them"}
+#: Say in which order a tower is told.
+_TOLD_IN_ORDER: Final = ORDERS.keys() | {"bottom", "top"}
+_NO_NAMES: Final = MUTE | TAKES | CLEAR | {"elsewhere"}
+_NONE: Final = frozenset({"nothing", "no", "none"})
 _DENYING: Final = frozenset({NEGATION, "nothing", "none"})
-_LONGEST: Final = max(map(len, MERGED))
+#: Say that a tower is what the heading before is about.
+_OF_TOWERS: Final = ORDERS.keys() | {"on", "upon", "top", "bottom", "base"}
 
 
 def sentences(text: str) -> Iterator[list[list[Words]]]:
-    """The clauses of every sentence; those that say nothing are left out."""
-    clauses: list[list[Words]] = [[]]
-    for match in _TOKEN.finditer(text):
-        if match["other"]:
-            raise InvalidGoalError("unexpected character", match.start(), match["other"])
-        if match["end"]:
-            yield from _finished(clauses)
-            clauses = [[]]
-        elif match["arrow"]:
-            clauses[-1].append(Words("to", match.start(), match.end()))
-        elif match["comma"] == ":" and (place := _place_heading(_merged(clauses[-1]))):
+    """The clauses of every sentence; those that say nothing are left out.
+
+    Raises:
+        InvalidGoalError: for what no goal has, see :func:`parts_of`, and for unclear corrections.
+    """
+    found: list[list[list[Words]]] = []
+    for clauses in _written(text):
+        kept = [clause for clause in clauses if not _says_nothing(clause)]
+        if found and kept and joined(found[-1], kept):
+            found[-1] += kept
+        elif kept:
+            found.append(kept)
+    heading: list[list[Words]] = []
+    for number, clauses in enumerate(found):
+        clauses = corrected(clauses, said_before=number > 0)
+        if heading:
+            told = any(item.text in _OF_TOWERS for clause in clauses for item in clause)
+            clauses = clauses if told else [*heading, *clauses]
+        heading = []
+        if len(clauses) == 1 and is_heading(clauses[0]) and number + 1 < len(found):
+            heading = clauses  # "Build a tower. At the bottom …"
+        elif clauses:
+            yield _finished(clauses)
+
+
+def _written(text: str) -> Iterator[list[list[Words]]]:
+    """The sentences as they are written, in the parts that commas make."""
+    clauses: list[list[Words]] = []
+    colon = False
+    for part in parts_of(text):
+        words = part.words
+        if part.mark == ")" and words and words[-1].text in "abcdefgh":
+            words = words[:-1]  # "a) red on blue"
+        clause = without_courtesy(merged(words))
+        if part.mark == ":" and (place := _place_heading(clause)):
             # "stack 1: red" is a sentence of its own.
-            yield from _finished(clauses[:-1])
-            clauses = [place, []]
-        elif match["comma"] or match["dash"]:
-            if match["comma"] == ":" and is_heading(_merged(clauses[-1])):
-                clauses.pop()
-            clauses.append([])
-        else:
-            clauses[-1] += _words(match["word"].lower().replace("’", "'"), match.start())
-    yield from _finished(clauses)
+            yield clauses
+            clauses = [place]
+        elif clauses and colon and _is_place(clause):
+            clauses[-1] = [*clauses[-1], *clause]  # "red: stack 1"
+        elif clause and not (part.mark == ":" and is_heading(clause)):
+            clauses.append(clause)
+        colon = part.mark == ":"
+        if part.end:
+            yield clauses
+            clauses = []
 
 
-def _finished(clauses: Sequence[list[Words]]) -> Iterator[list[list[Words]]]:
-    """The sentence of these clauses; none where they say nothing."""
-    if kept := [clause for clause in map(_merged, clauses) if not _says_nothing(clause)]:
-        parts: list[list[Words]] = []
-        denied = False
-        for clause in _with_order(kept):
-            parts += _split_negation(clause, denied)
-            # "nothing on red, green or blue"
-            denied = any(item.text in _DENYING for item in clause) or (
-                denied and not _has_phrase(clause)
-            )
-        yield _as_tower(parts)
+def _finished(clauses: Sequence[list[Words]]) -> list[list[Words]]:
+    """The clauses of a sentence, each with one relation or one name."""
+    parts: list[list[Words]] = []
+    denied = False
+    for clause in map(_with_exceptions, _with_order(clauses)):
+        parts += _split_negation(clause, denied)
+        # "nothing on red, green or blue"
+        denied = any(item.text in _DENYING for item in clause) or (
+            denied and not _has_phrase(clause)
+        )
+    towers = as_tower([one for part in parts for one in told_apart(part)])
+    if not any(item.text in _TOLD_IN_ORDER for clause in towers for item in clause):
+        _check_order(clauses)
+    return towers
+
+
+def _check_order(clauses: Sequence[list[Words]]) -> None:
+    """Raises InvalidGoalError for "red in stack1, then blue": beside it, or on it?"""
+    for clause in clauses:
+        for number, item in enumerate(clause):
+            behind = list(takewhile(lambda one: one.text not in JOINS, clause[number + 1 :]))
+            related = _has_phrase(behind) or any(one.text in _NO_NAMES for one in behind)
+            if item.text == "then" and behind and not related:
+                raise InvalidGoalError(
+                    "say where this goes", behind[0].offset, " ".join(one.text for one in behind)
+                )
 
 
 def _has_phrase(clause: Sequence[Words]) -> bool:
@@ -89,6 +133,10 @@ def _place_heading(clause: list[Words]) -> list[Words] | None:
     if clause and Words(" ".join(item.text for item in clause), clause[0].offset).is_place:
         return [Words("in", clause[0].offset, clause[0].offset), *clause]
     return None
+
+
+def _is_place(words: Sequence[Words]) -> bool:
+    return bool(words) and Words(" ".join(item.text for item in words), 0).is_place
 
 
 def _with_order(clauses: Sequence[list[Words]]) -> list[list[Words]]:
@@ -107,64 +155,23 @@ def _with_order(clauses: Sequence[list[Words]]) -> list[list[Words]]:
     return result
 
 
-def _words(word: str, offset: int) -> list[Words]:
-    """A word as it is read: without articles, and its contractions written out."""
-    if word in ARTICLES:
-        return []
-    if word in SHORT_NEGATIONS:
-        end = offset + len(word)
-        return [Words(SHORT_NEGATIONS[word], offset, end), Words(NEGATION, offset, end)]
-    if word == "lets":
-        return [Words("let", offset)]
-    head, mark, tail = word.partition("'")
-    end = offset + len(word)
-    if not mark:
-        return [Words(without_slip(word), offset, end)]
-    if tail == "t":
-        # "can't" and "won't" lose more than the others.
-        verb = {"can": "could", "won": "will"}.get(head, head.removesuffix("n"))
-        return [Words(verb, offset, end), Words(NEGATION, offset, end)]
-    verb = {"d": "would", "ll": "will"}.get(tail, "is")
-    return [Words(head, offset, end), Words(verb, offset, end)]
-
-
-def _merged(words: Sequence[Words]) -> list[Words]:
-    """With several words that stand for others replaced."""
-    result: list[Words] = []
-    index = 0
-    while index < len(words):
-        for length in range(min(_LONGEST, len(words) - index), 0, -1):
-            texts = tuple(item.text for item in words[index : index + length])
-            if texts in MERGED:
-                whole = words[index : index + length]
-                result += [Words(text, whole[0].offset, end_of(whole)) for text in MERGED[texts]]
-                index += length
-                break
-        else:
-            if side := _side_of_the_row(words[index : index + 3]):
-                result.append(side)
-                index += 1
-            else:
-                result.append(words[index])
-            index += 1
-    return result
-
-
-def _side_of_the_row(words: Sequence[Words]) -> Words | None:
-    """ "left stack" as the name of a place; in "left stack 1", left is a relation."""
-    if len(words) < 2 or words[0].text not in SIDES or words[1].text not in PLACE_NOUNS:
-        return None
-    if len(words) == 3 and (words[2].text.isdigit() or words[2].text in NUMBERS):
-        return None
-    return Words(f"{words[0].text} {words[1].text}", words[0].offset, words[1].stop)
-
-
 def _says_nothing(clause: Sequence[Words]) -> bool:
     if clause and clause[0].text == "for" and is_heading(clause):
         return True  # "for the experiment"
-    if any(item.text == "you" for item in clause):
-        return all(item.text in POLITE | _YOU for item in clause)  # "would you?"
-    return all(item.text in POLITE for item in clause)
+    return says_nothing(clause) or (len(clause) == 1 and clause[0].text.isdigit())
+
+
+def _with_exceptions(clause: list[Words]) -> list[Words]:
+    """ "all boxes but the white one", "everything in stack1 but red", with "except"."""
+    texts = [item.text for item in clause]
+    for at in range(1, len(clause) - 1):
+        if texts[at] != "but" or not any(text in EVERYONE for text in texts[:at]):
+            continue
+        named = not _has_phrase(clause[at + 1 :]) and NEGATION not in texts[at + 1 :]
+        if named or not _has_phrase(clause[:at]):
+            word = Words(EXCEPT, clause[at].offset, clause[at].stop)
+            return [*clause[:at], word, *clause[at + 1 :]]
+    return clause
 
 
 def _split(clauses: Sequence[list[Words]]) -> Iterator[list[Words]]:
@@ -172,17 +179,34 @@ def _split(clauses: Sequence[list[Words]]) -> Iterator[list[Words]]:
     for clause in clauses:
         part: list[Words] = []
         for item in clause:
-            if item.text in OPENINGS and all(word.text in MUTE for word in part):
+            if item.text in OPENINGS and all(word.text in _BEFORE_OPENING for word in part):
                 # What is before is no relation, and none is missing.
                 part = []
+            elif item.text == "and" and _leaves_out(part):
+                # "all but red and blue in stack 1"
+                part.append(Words(EXCEPT, item.offset, item.stop))
             elif item.text not in JOINS and not (item.text in OPENINGS and _has_phrase(part)):
                 part.append(item)
             else:
+                if item.text == "and":
+                    part = _without_both(part)
                 if part and not _says_nothing(part):
                     yield part
                 part = []
         if part and not _says_nothing(part):
             yield part
+
+
+def _without_both(part: list[Words]) -> list[Words]:
+    """ "both red" in front of "and blue" without its "both"."""
+    at = next((index for index, item in enumerate(part) if item.text == "both"), len(part) - 1)
+    named = at + 1 < len(part) and part[-1].text not in PLURALS and not _has_phrase(part)
+    return [*part[:at], *part[at + 1 :]] if named else part
+
+
+def _leaves_out(part: Sequence[Words]) -> bool:
+    """Whether it says who is left out, and not yet of what."""
+    return any(item.text == EXCEPT for item in part) and not _has_phrase(part)
 
 
 def _split_negation(clause: list[Words], denied: bool) -> Iterator[list[Words]]:
@@ -193,7 +217,7 @@ def _split_negation(clause: list[Words], denied: bool) -> Iterator[list[Words]]:
     """
     texts = [item.text for item in clause]
     neither = "neither" in texts and "nor" in texts
-    nothing = "or" in texts and "nothing" in texts[: texts.index("or")]
+    nothing = "or" in texts and any(text in _NONE for text in texts[: texts.index("or")])
     if nothing or (denied and "or" in texts and NEGATION not in texts and not _has_phrase(clause)):
         # What is not on red or blue is on none of them.
         yield from _split(
@@ -227,51 +251,12 @@ def _split_negation(clause: list[Words], denied: bool) -> Iterator[list[Words]]:
         yield [denial, *part] if with_phrase[index] or last else part
 
 
-def _as_tower(clauses: list[list[Words]]) -> list[list[Words]]:
-    """ "in stack 0: red at the bottom, then blue, green on top" as "from bottom to top"."""
-    ends: dict[tuple[str, ...], int] = {
-        ("at", "bottom"): 0,
-        ("on", "bottom"): 0,
-        ("on", "top"): 1,
-        ("at", "top"): 1,
-    }
-    last_two = [tuple(item.text for item in clause[-2:]) for clause in clauses]
-    told = [index for index, texts in enumerate(last_two) if texts in ends]
-    if len(told) != 2 or told[1] != len(clauses) - 1:
-        return clauses
-    first, second = (ends[last_two[index]] for index in told)
-    if first == second:
-        return clauses
-    heading, name = _heading_before(clauses[told[0]][:-2])
-    if told[0] == 1 and not heading:
-        heading = clauses[0]
-    elif told[0] != 0:
-        return clauses
-    order = Words("bottom-to-top" if first == 0 else "top-to-bottom", name[0].offset)
-    middle = [
-        clause[:-2] if texts == ("in", "middle") else clause
-        for clause, texts in zip(clauses[told[0] + 1 : -1], last_two[told[0] + 1 : -1])
-    ]
-    return [[*heading, order], name, *middle, clauses[-1][:-2]]
-
-
-def _heading_before(words: list[Words]) -> tuple[list[Words], list[Words]]:
-    """What is before "with", and what is behind."""
-    for index, item in enumerate(words):
-        if item.text in OPENINGS and index:
-            return words[:index], words[index + 1 :]
-    return [], words
-
-
 def is_heading(words: Sequence[Words]) -> bool:
     """Whether it only says that a goal follows: "the goal for my class", "build a tower"."""
     known = HEADING | MUTE
+    if len(words) > 1 and words[0].text in known:
+        words = [item for item in words if not item.text.isdigit()]  # "step 2"
     exact = [item.text in known for item in words]
     if len(words) > 1 and any(exact):
         exact = [meant(item.text, known, RIGHT_WORDS) is not None for item in words]
     return all(exact)
-
-
-def end_of(words: Sequence[Words]) -> int:
-    """Where the last of them ends in the goal."""
-    return words[-1].stop

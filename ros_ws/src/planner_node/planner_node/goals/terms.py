@@ -5,27 +5,15 @@ from __future__ import annotations
 
 import enum
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 from scene_graph import base_name
 
-from ..errors import InvalidGoalError
-from .language import (
-    BOTH,
-    EXCEPT,
-    MODALS,
-    NOTHING_ELSE,
-    NUMBERS,
-    OTHERS,
-    PLACE_NOUNS,
-    PLURALS,
-    SIDES,
-    meant,
-)
+from .language import BOTH, NUMBERS, PLACE_NOUNS, SIDES, meant
 
 _BASE: Final = re.compile(r"([a-z]+)[ _]?(?:number |no |nr )?(\d+)")
+_FROM_RIGHT: Final = re.compile(r"stack (\d+) from right")
 
 
 @dataclass(frozen=True)
@@ -45,9 +33,15 @@ class Words:
     def base(self) -> str | None:
         """The name of the base that is meant, or None where it is a block or another place."""
         match = _BASE.fullmatch(_with_digits(self.text))
-        if match is None or meant(match[1], {"stack"}) is None:
+        if match is None or not (match[1] in PLACE_NOUNS or meant(match[1], {"stack"})):
             return None
         return base_name(int(match[2]))
+
+    @property
+    def from_right(self) -> int | None:
+        """Which place it is from the right, from 0; None where it is not told from there."""
+        match = _FROM_RIGHT.fullmatch(self.text)
+        return int(match[1]) if match else None
 
     @property
     def side(self) -> str | None:
@@ -58,7 +52,7 @@ class Words:
     @property
     def is_place(self) -> bool:
         """Whether it is a place."""
-        return self.base is not None or self.side is not None
+        return any(one is not None for one in (self.base, self.side, self.from_right))
 
 
 class Kind(enum.Enum):
@@ -81,17 +75,21 @@ class Term:
         only: of THE, nothing else is there.
         listed: of COUNT, the names that follow are the ones that are counted.
         among: of COUNT, those that are counted; none: all that fit.
+        exact: of EVERY, how many there have to be; None: it is not said.
+        bare: it is a number or "all" without a name: "two boxes in stack0, one in stack1".
     """
 
     words: Words
     kind: Kind = Kind.THE
     least: int = 1
     most: int | None = None
-    but: tuple[Words, ...] = ()
+    but: tuple[Term, ...] = ()
     others: bool = False
     only: bool = False
     listed: bool = False
     among: tuple[Words, ...] = ()
+    exact: int | None = None
+    bare: bool = False
 
     @property
     def is_place(self) -> bool:
@@ -104,114 +102,25 @@ class Term:
         return self.kind is Kind.EVERY and self.words.text in PLACE_NOUNS
 
     @property
+    def stands_for_several(self) -> bool:
+        """Whether it is "both", or "all" of those that were named."""
+        return self.words.text in BOTH or (self.bare and self.kind is Kind.EVERY)
+
+    @property
     def several(self) -> bool:
         """Whether more than one object is asked for."""
         return self.kind is Kind.EVERY or (self.kind is Kind.COUNT and self.least > 1)
 
 
-_EVERY: Final = frozenset({"every", "each", "all"})
-_SOME: Final = frozenset({"a", "an", "any", "some", "another"})
-_NO: Final = frozenset({"no", "none"})
-_ALONE: Final = {
-    "everything": Kind.EVERY,
-    "nothing": Kind.NO,
-    "none": Kind.NO,
-    "something": Kind.COUNT,
-    "anything": Kind.COUNT,
-    "all": Kind.EVERY,
-}
-#: Which bounds a number has behind these words, and what is added to it.
-_BOUNDS: Final = {
-    "at-least": (True, False, 0),
-    "at-most": (False, True, 0),
-    "more-than": (True, False, 1),
-    "fewer-than": (False, True, -1),
-}
-
-
-def term_of(words: Sequence[Words]) -> Term:
-    """Reads a quantity in front of a name: "three red blocks", "every box", "a cylinder"."""
-    texts = [item.text for item in words]
-    offset = words[0].offset
-    whole = Words(" ".join(texts), offset)
-    if whole.is_place or whole.text in BOTH:
-        return Term(whole)
-    if EXCEPT in texts[1:-1]:
-        at = texts.index(EXCEPT)
-        every = term_of(words[:at])
-        if every.kind is Kind.EVERY and not every.but:
-            return replace(every, but=(term_of(words[at + 1 :]).words,))
-    if whole.text in OTHERS:
-        return Term(Words("block", offset), Kind.EVERY, others=True)
-    if texts[:2] == ["all", "other"]:
-        return replace(term_of([words[0], *words[2:]]), others=True)
-    if whole.text in NOTHING_ELSE:
-        return Term(Words("block", offset), Kind.NO, 0, 0, others=True)
-    if texts[0] in ("this", "that") and len(texts) > 1:
-        return term_of(words[1:])
-    first = texts[0] == "only" and len(texts) > 1 and _quantity(texts)[0] is Kind.THE
-    if first or (texts[-1] == "alone" and len(texts) > 1):
-        alone = term_of(words[1:] if first else words[:-1])
-        if alone.kind is not Kind.THE:
-            raise InvalidGoalError(
-                "it is not clear what 'only' is said of; name the blocks", offset, whole.text
-            )
-        return replace(alone, only=True)
-    if len(texts) == 2 and texts[0] in _ALONE and meant(texts[1], MODALS):
-        texts = texts[:1]  # "nothing shoud be on red"
-    if len(texts) == 1 and len(texts[0]) > 5:
-        texts = [meant(texts[0], _ALONE) or texts[0]]
-    if len(texts) == 1 and texts[0] in _ALONE:
-        return Term(Words("block", offset), _ALONE[texts[0]])
-    if texts[0] == "both":
-        texts = ["all", *texts[1:]]
-    kind, least, most, used = _quantity(texts)
-    listed = False
-    if used and used < len(texts) and texts[used] == "of":
-        used += 1
-        listed = kind is Kind.COUNT and texts[-1] not in PLURALS
-    others = texts[0] == "another" or (
-        used < len(texts) - 1 and texts[used] == "other" and kind is not Kind.THE
-    )
-    used += others and texts[0] != "another"  # "any other block"
-    rest = texts[used:]
-    if kind is Kind.THE and rest[-1] in PLURALS:
-        kind = Kind.EVERY
-    if not rest:
-        if kind is not Kind.COUNT or texts[0] in _SOME:
-            raise InvalidGoalError("it is not said which block", offset, whole.text)
-        rest = ["block"]
-    start = words[used].offset if used < len(words) else offset
-    name = Words(" ".join(PLURALS.get(text, text) for text in rest), start)
-    return Term(name, kind, least, most, others=others, listed=listed)
-
-
-def _quantity(texts: Sequence[str]) -> tuple[Kind, int, int | None, int]:
-    """The kind, the bounds, and how many words say so."""
-    first = texts[0]
-    if len(texts) > 1 and first in _ALONE and first not in ("none", "all"):
-        kind = _ALONE[first]  # "anything red"
-        return kind, int(kind is not Kind.NO), 0 if kind is Kind.NO else None, 1
-    if first in _EVERY:
-        return Kind.EVERY, 1, None, 1
-    if first in _NO:
-        return Kind.NO, 0, 0, 1
-    if first in _SOME:
-        return Kind.COUNT, 1, None, 1
-    named = _BOUNDS.get(first)
-    used = int(named is not None or first in ("exactly", "only"))
-    if used < len(texts):
-        number = number_of(texts[used])
-        if number is not None:
-            low, high, more = named or (True, True, 0)
-            number = max(0, number + more)
-            return Kind.COUNT, number if low else 0, number if high else None, used + 1
-    return Kind.THE, 1, None, 0
-
-
 def number_of(text: str) -> int | None:
     """The number that a word is, in digits or in letters."""
     return int(text) if text.isdigit() else NUMBERS.get(text)
+
+
+def is_any_place(term: Term) -> bool:
+    """Whether it is "any stack"."""
+    some = term.kind is Kind.COUNT and (term.least, term.most) == (1, None)
+    return some and term.words.text in PLACE_NOUNS
 
 
 def _with_digits(text: str) -> str:

@@ -10,11 +10,11 @@ from itertools import pairwise
 from scene_graph import ABOVE, BESIDE, LEFT, PREDICATES, UP, Phrase
 
 from ..errors import InvalidGoalError
-from .clauses import Said, no_relation
-from .language import ALL_OF, BOTH, DIFFERENT_PLACES, EACH_OTHER, IT, PLACE_NOUNS, SAME_PLACE
+from .language import DIFFERENT_PLACES, EACH_OTHER, IT, SAME_PLACE, UPON
 from .objections import check_places, unclear
 from .parsed import ParsedRelation, counted, in_one_place, none_but
-from .terms import Kind, Term, Words
+from .said import Said, no_relation
+from .terms import Kind, Term, Words, is_any_place
 
 
 class Told:
@@ -32,20 +32,32 @@ class Told:
         self.subjects: list[Term] = []
         self.object: Term | None = None
         self.link: tuple[Phrase, bool, Words] | None = None
+        #: The subjects of a relation that was told of its object.
+        self._of_object: list[Term] = []
+        #: Those that were spoken of as "every box"; a number of blocks leaves open which they are.
+        self._kinds: list[Term] = []
         #: All blocks that were named, by their words.
         self._named: dict[str, Term] = {}
 
     def all_named(self, term: Term) -> list[Term]:
-        """The blocks that "both" or "all three" stands for: those that were named, if so many."""
-        number = ALL_OF.get(term.words.text, 2)
+        """The blocks that "both" or "all three" stands for: those that were named, if so many.
+
+        "all" of more than were named, or of none, is every one of the scene.
+        """
+        number = term.exact or (2 if not term.bare else max(2, len(self._named)))
         if len(self._named) != number:
+            if term.bare and (term.exact is not None or not self._named):
+                return [replace(term, bare=False)]
             raise unclear(term)
         return list(self._named.values())
 
-    def meant(self, term: Term, phrase: Phrase | None, carried: bool = False) -> Term:
+    def meant(
+        self, term: Term, phrase: Phrase | None, carried: bool = False, again: bool = False
+    ) -> Term:
         """A name itself; for "it" the one that it can only stand for.
 
         Args:
+            again: it is the subject of a relation of the kind that was denied before.
             phrase: the relation whose object it is; None for a subject.
             carried: the relation's subject is that of the one before.
         """
@@ -55,9 +67,9 @@ class Told:
             return self.object  # "two in the left stack, and red at the bottom of it"
         subject = self.subjects[0] if len(self.subjects) == 1 else None
         found: Term | None = None
-        if self.object is None or self.object.is_place:
-            found = subject
-        elif phrase is not None and carried:
+        if self.object is None or self.object.is_place or (again and self.link and self.link[1]):
+            found = subject  # "red not on blue, put it on green"
+        elif phrase is not None and (carried or self._opposite(phrase)):
             found = self.object
         elif phrase == Phrase(PREDICATES[UP]) and self.link is not None:
             # On what already carries a block nothing else can be put.
@@ -66,6 +78,11 @@ class Told:
         if found is None or found.kind is not Kind.THE:
             raise unclear(term)
         return found
+
+    def _opposite(self, phrase: Phrase) -> bool:
+        """Whether it is "right of" behind "left of": "red left of blue and green right of it"."""
+        before = self.link[0] if self.link is not None else phrase
+        return before.predicate == phrase.predicate and before.inverse != phrase.inverse
 
     def clear(self, term: Term) -> None:
         """Adds that nothing stands on it."""
@@ -89,12 +106,14 @@ class Told:
         carried = clause.subject is None
         for phrase, denied, object_, written in links:
             if object_.words.text in EACH_OTHER:
+                if len(subjects) == 1 and subjects[0].exact == 2:
+                    subjects = [subjects[0], subjects[0]]  # "the two red ones next to each other"
                 if len(subjects) != 2 or phrase.predicate.name != BESIDE:
                     raise unclear(object_)
                 subjects, objects = subjects[:1], subjects[1:]
             elif self._about_one_place(subjects, phrase, denied, object_):
                 continue
-            elif object_.words.text in BOTH:
+            elif object_.stands_for_several:
                 objects = self.all_named(object_)
             else:
                 objects = [self.meant(object_, phrase, carried)]
@@ -107,7 +126,22 @@ class Told:
             subjects, carried = objects[-1:], False
         if clause.of_object and not objects[-1].is_place:
             # Of whom it was said is who is spoken of.
+            self._of_object = self.subjects
             self.subjects, self.object = list(objects[-1:]), None
+
+    def add_again(self, clause: Said) -> None:
+        """What was said last, of another: "and so should blue", "neither should blue"."""
+        assert clause.subject is not None
+        told_of = self.subjects if self.object is not None else self._of_object
+        denied = self.link is not None and (
+            self.link[1] or any(one.kind is Kind.NO for one in told_of)
+        )
+        if self.link is None or denied == (clause.again == "so"):
+            raise no_relation(self._text, clause.words)
+        if self.object is not None:
+            self.add([clause.subject], *self.link, self.object)
+        else:
+            self.add(self._of_object, *self.link, clause.subject)  # "red has nothing on it"
 
     def add_edge(self, subjects: Sequence[Term], clause: Said) -> None:
         """The relations of "red at the bottom", "red at the top of it"."""
@@ -119,6 +153,9 @@ class Told:
             _, denied, place, written = clause.links[0]
         if place is None or not place.is_place or place.is_every_place or denied:
             raise no_relation(self._text, clause.words)
+        if clause.edge == UPON and len(self.subjects) == 1 and self.subjects[0].kind is Kind.THE:
+            # "red in stack1, blue on top": of it, or of the stack?
+            raise unclear(subjects[0])
         bottom = clause.edge == "bottom"
         phrase = Phrase(PREDICATES[UP if bottom else ABOVE])
         self.add(subjects, phrase, False, written, place)
@@ -133,6 +170,19 @@ class Told:
         phrase = Phrase(PREDICATES[UP], inverse=not upwards)
         self.add([block], phrase, False, block.words, self.subjects[0])
         self.subjects = [block]
+
+    def _of_same_kind(self, term: Term) -> Term:
+        """A number alone with the kind of what was counted before: "two boxes here, one there"."""
+        before = self.subjects[0] if len(self.subjects) == 1 else None
+        if term.bare and term.others:
+            # "one red block here and the other there": there are no more of them than these.
+            if before is None or before.kind is not Kind.COUNT or before.most != before.least:
+                raise unclear(term)
+            exact = before.least + term.least
+            return replace(term, words=before.words, others=False, bare=False, exact=exact)
+        if not term.bare or before is None or before.kind is Kind.THE or before.others:
+            return term
+        return replace(term, words=replace(before.words, offset=term.words.offset), bare=False)
 
     def _about_one_place(
         self, subjects: Sequence[Term], phrase: Phrase, denied: bool, object_: Term
@@ -167,16 +217,12 @@ class Told:
         counting = counted(subjects)
         if counting is None or object_.listed:
             raise unclear(object_ if object_.listed else subjects[0])
-        subjects = counting
+        subjects = [self._of_same_kind(term) for term in counting]
         if len(subjects) > 1 and subjects[-1].kind is Kind.NO and subjects[-1].others:
             # "red and nothing else in stack1"
             subjects = [replace(subject, only=True) for subject in subjects[:-1]]
         bounded = all(term.kind is Kind.COUNT and not term.least for term in subjects)
-        if (
-            object_.words.text in PLACE_NOUNS
-            and object_.kind is Kind.COUNT
-            and (bounded or all(term.kind is Kind.NO for term in subjects))
-        ):
+        if is_any_place(object_) and (bounded or all(term.kind is Kind.NO for term in subjects)):
             object_ = replace(object_, kind=Kind.EVERY)  # "at most two blocks in any stack"
         if only := [subject for subject in subjects if subject.only]:
             nothing_else = none_but(subjects, phrase, denied, object_)
@@ -186,16 +232,17 @@ class Told:
         self._named |= {words.text: Term(words) for term in subjects for words in term.among}
         for subject in subjects:
             if subject.others:
-                if not self._named:
+                spoken = [*self._named.values(), *self._kinds]
+                if not spoken or any(term.kind is Kind.COUNT for term in spoken):
                     raise unclear(subject)
                 if subject.kind is Kind.NO and set(self._named) != {
                     term.words.text for term in self.subjects
                 }:
                     # Who else was named may be meant as well.
                     raise unclear(subject)
-                subject = replace(
-                    subject, others=False, but=tuple(term.words for term in self._named.values())
-                )
+                subject = replace(subject, others=False, but=tuple(spoken))
+            if subject.kind in (Kind.EVERY, Kind.COUNT) and not subject.others:
+                self._kinds.append(subject)
             for term in (subject, object_):
                 if term.words.text in IT:
                     raise unclear(term)

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a text to words: sentences, the parts that commas make of them, contractions, slips."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Final
+
+from scene_graph import COLORS
+
+from ..errors import InvalidGoalError
+from .language import NEGATION, SHORT_NEGATIONS
+from .phrases import without_slip
+from .terms import Words
+
+_TOKEN: Final = re.compile(
+    r"(?P<left_out>[:;]-?[)D(](?!\w)|[\"“”‘]|['’](?!\w)|(?<!\w)['’]"
+    r"|(?<=\bmax)\.|(?<=\bmin)\.|(?<=\bno)\.(?=\s*\d)|(?<=\bnr)\.(?=\s*\d))"
+    r"|(?P<word>[^\W_](?:\w|-(?=\w)|['’](?=\w))*)|(?P<sign>[-=]+>|→|[&+=#])"
+    r"|(?P<end>[.;!?…])|(?P<comma>[,:()])|(?P<dash>[-–—]+(?=\s))|(?P<other>\S)",
+    re.IGNORECASE,
+)
+#: What is written as a sign, as words.
+_SIGNS: Final = {"&": "and", "+": "and", "=": "is", "#": "number"}
+#: Ask about what is there, at the start of a question.
+_ASKING: Final = frozenset({
+    "is", "are", "was", "were", "does", "did", "has", "have", "what", "which", "where", "who",
+    "why", "when", "how",
+})  # fmt: skip
+#: Words that are written together with the colour beside them: "redon blue", "red onblue".
+_GLUED: Final = frozenset({"on", "onto", "in", "to", "is"})
+
+
+@dataclass
+class Part:
+    """The words up to a comma, and what is written behind them: ``,``, ``:``, a dash, or nothing.
+
+    Attributes:
+        end: the sentence ends behind it.
+    """
+
+    words: list[Words] = field(default_factory=list)
+    mark: str = ""
+    end: bool = False
+
+
+def parts_of(text: str) -> Iterator[Part]:
+    """The parts of a goal in their order; the last one ends a sentence.
+
+    Raises:
+        InvalidGoalError: for a character that goals do not have, and for questions.
+    """
+    part, first = Part(), True
+    for match in _TOKEN.finditer(text):
+        if match["left_out"]:
+            continue
+        if match["other"]:
+            raise InvalidGoalError("unexpected character", match.start(), match["other"])
+        if word := match["word"]:
+            part.words += _words(word.lower().replace("’", "'"), match.start())
+            if first and part.words:
+                _asks = part.words[0] if part.words[0].text in _ASKING else None
+                first = False
+        elif sign := match["sign"]:
+            part.words.append(Words(_SIGNS.get(sign, "to"), match.start(), match.end()))
+        elif match["end"]:
+            if match["end"] == "?" and not first and _asks is not None:
+                raise InvalidGoalError(
+                    "this asks what is there; say what is to be", _asks.offset, _asks.text
+                )
+            part.end, first = True, True
+            yield part
+            part = Part()
+        else:
+            part.mark = match["comma"] or "-"
+            yield part
+            part = Part()
+    part.end = True
+    yield part
+
+
+def _words(word: str, offset: int) -> list[Words]:
+    """A word as it is read, its contractions written out."""
+    if word in SHORT_NEGATIONS:
+        end = offset + len(word)
+        return [Words(SHORT_NEGATIONS[word], offset, end), Words(NEGATION, offset, end)]
+    head, mark, tail = word.partition("'")
+    end = offset + len(word)
+    if not mark:
+        return _apart(word, offset) or [Words(without_slip(word), offset, end)]
+    if tail == "t":
+        # "can't" and "won't" lose more than the others.
+        verb = {"can": "could", "won": "will"}.get(head, head.removesuffix("n"))
+        return [Words(verb, offset, end), Words(NEGATION, offset, end)]
+    verb = {"d": "would", "ll": "will"}.get(tail, "is")
+    return [Words(head, offset, end), Words(verb, offset, end)]
+
+
+def _apart(word: str, offset: int) -> list[Words]:
+    """ "redon" as two words; none where it is not written together."""
+    for at in range(2, len(word) - 1):
+        one, other = word[:at], word[at:]
+        if (one in COLORS and other in _GLUED) or (one in _GLUED and other in COLORS):
+            return [Words(one, offset), Words(other, offset + at)]
+    return []

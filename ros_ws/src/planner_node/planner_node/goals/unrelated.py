@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Clauses without a relation of their own: a name, what to take, what is clear, a row's heading."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scene_graph import PREDICATES
+
+from .around import asker, verb_at_start, without_ends
+from .language import CLEAR, HEADING, MUTE, NEGATION, NOUN_VERBS, TAKES, meant
+from .orders import ORDERS
+from .phrases import RIGHT_WORDS, find
+from .quantities import term_of
+from .said import Link, Said, no_relation
+from .terms import Term, Words
+
+
+def unrelated(text: str, words: list[Words]) -> Said:
+    """A name, something to take, or something that is to be clear."""
+    if words[-1].text in ("there", "elsewhere") and (there := _there(words)):
+        return there
+    taken = _taken(words)
+    if taken:
+        return Said(words, term_of(taken), takes=True)
+    clear = [item for item in words if item.text in CLEAR]
+    if not clear:
+        clear = [item for item in words[:2] if meant(item.text, CLEAR | RIGHT_WORDS) in CLEAR]
+    denied = any(item.text == NEGATION for item in words)
+    rest = [item for item in words if item not in clear]
+    start = max(verb_at_start(rest), asker(rest))
+    name = without_ends(rest[start:])
+    asks = [item for item in rest if item.text in MUTE and item not in name]
+    if len(clear) == 1 and name and not denied:
+        return Said(words, term_of(name), clears=True)
+    if clear or denied or not name:
+        raise no_relation(text, words)
+    return Said(words, term_of(name), asks=bool(asks))
+
+
+def _there(words: Sequence[Words]) -> Said | None:
+    """ "blue must not be there", "blue elsewhere": in the place that was spoken of, or not."""
+    elsewhere = words[-1].text == "elsewhere"
+    named = [item for item in words[verb_at_start(words) :] if item.text not in MUTE - NOUN_VERBS]
+    denied = [item for item in named if item.text == NEGATION]
+    named = [item for item in named if item.text not in (NEGATION, "elsewhere")]
+    if not named or len(denied) + elsewhere > 1:
+        return None
+    there = Words("it", words[-1].offset, words[-1].stop)
+    link = (PREDICATES.phrases["in",], bool(denied) or elsewhere, Term(there), words[-1])
+    return Said(words, term_of(named), (link,))
+
+
+def tower_heading(text: str, words: Sequence[Words], order: Words) -> Said:
+    """The heading of a tower, "from bottom to top in stack 1", and the first name behind it."""
+    rest = [
+        item for item in words if item is not order and item.text not in HEADING | MUTE - NOUN_VERBS
+    ]
+    found = list(find(rest, PREDICATES.phrases))
+    links: tuple[Link, ...] = ()
+    if len(found) == 1:
+        # A place; behind it there may be the first name.
+        behind = rest[found[0].last :]
+        place = next((behind[:last] for last in (2, 1) if _is_place(behind[:last])), None)
+        if place is None:
+            raise no_relation(text, words)
+        links = ((found[0].phrase, False, term_of(place), order),)
+        rest = [*rest[: found[0].first], *behind[len(place) :]]
+    elif found:
+        raise no_relation(text, words)
+    elif stop := next((last for last in (2, 1) if _is_place(rest[:last])), 0):
+        # "column 1 from bottom to top"
+        phrase = PREDICATES.phrases["in",]
+        links, rest = ((phrase, False, term_of(rest[:stop]), order),), rest[stop:]
+    subject = term_of(rest) if rest else None
+    return Said(words, subject, links, order=ORDERS[order.text])
+
+
+def _is_place(words: Sequence[Words]) -> bool:
+    return bool(words) and term_of(words).is_place
+
+
+def _taken(words: Sequence[Words]) -> list[Words]:
+    """What "take …" or "pick … up" says to take; empty for other clauses."""
+    for index, item in enumerate(words[:4]):
+        if item.text in TAKES:
+            name = list(words[index + 1 :])
+            return without_ends(name) if name else []
+        if item.text not in MUTE and meant(item.text, MUTE | RIGHT_WORDS) not in MUTE:
+            break
+    return []

@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Several words of a goal that stand for others: "out of" is read as "not in"."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Final
+
+from .language import CORRECTION, NUMBERS, TAKEN_BACK
+
+Wordings = dict[tuple[str, ...], tuple[str, ...]]
+
+
+def _all_as(meaning: tuple[str, ...], texts: Iterable[str]) -> Wordings:
+    """Each of some texts with the same meaning."""
+    return {tuple(text.split()): meaning for text in texts}
+
+
+#: "in the stack directly to the left of".
+_SIDE_BY_SIDE: Final = {
+    (*stack, how, *to, side, "of"): (f"just-{side}-of",)
+    for stack in ((), ("in", "stack"), ("in", "place"), ("in", "tower"))
+    for how in ("directly", "immediately", "just", "right")
+    for to in ((), ("to",))
+    for side in ("left", "right")
+    if (how, *to) != ("right",)
+}
+#: A number of blocks, or what is left out of them.
+_NUMBERS: Final[Wordings] = {
+    ("no", "more", "then"): ("at-most",),
+    ("no", "more", "than"): ("at-most",),
+    ("not", "more", "than"): ("at-most",),
+    ("not", "more", "then"): ("at-most",),
+    ("not", "more", "as"): ("at-most",),
+    ("at", "most"): ("at-most",),
+    ("atmost",): ("at-most",),
+    ("max",): ("at-most",),
+    ("maximum",): ("at-most",),
+    ("maximum", "of"): ("at-most",),
+    ("at", "max"): ("at-most",),
+    ("more", "than"): ("more-than",),
+    ("more", "then"): ("more-than",),
+    ("fewer", "than"): ("fewer-than",),
+    ("less", "than"): ("fewer-than",),
+    ("less", "then"): ("fewer-than",),
+    ("no", "fewer", "than"): ("at-least",),
+    ("no", "less", "than"): ("at-least",),
+    ("not", "less", "than"): ("at-least",),
+    ("at", "least"): ("at-least",),
+    ("at", "lest"): ("at-least",),
+    ("atleast",): ("at-least",),
+    ("min",): ("at-least",),
+    ("minimum",): ("at-least",),
+    ("precisely",): ("exactly",),
+    ("per", "stack"): ("in", "every", "stack"),
+    ("per", "place"): ("in", "every", "stack"),
+    ("not", "a", "single"): ("no",),
+    ("not", "one", "single"): ("no",),
+    ("no", "single"): ("no",),
+    ("no", "one"): ("nothing",),
+    ("nobody",): ("nothing",),
+    ("neither", "of"): ("no",),
+    ("except", "for"): ("except",),
+    ("apart", "from"): ("except",),
+    ("that", "are", "not"): ("except", "all"),
+    ("that", "is", "not"): ("except",),
+    ("which", "are", "not"): ("except", "all"),
+    ("somewhere", "else"): ("elsewhere",),
+    ("anywhere", "else"): ("elsewhere",),
+    ("immediately", "on"): ("directly", "on"),
+    ("nothing", "but"): ("only",),
+    ("nothing", "except"): ("only",),
+    ("nothing", "other", "than"): ("only",),
+    ("by", "itself"): ("alone",),
+    ("by", "themselves"): ("alone",),
+    ("on", "its", "own"): ("alone",),
+    ("both", "of", "them"): ("both",),
+    ("them", "both"): ("both",),
+    ("them", "all"): ("all",),
+    ("all", "of", "them"): ("all",),
+    ("all", "two"): ("both",),
+    ("all", "two", "of", "them"): ("both",),
+    **{("all", number, "of", "them"): ("all", number) for number in NUMBERS},
+    ("either", "of", "them"): ("either-of-them",),
+    ("side", "by", "side"): ("next", "to", "each-other"),
+    ("each", "other"): ("each-other",),
+    ("one", "another"): ("each-other",),
+}
+#: Nothing: whatever they are said of, the goal is the same.
+_NOTHING: Final = _all_as(
+    (),
+    (
+        "i do not care which of all two", "i do not care which ones", "i do not care which one",
+        "i do not care which", "not necessarily directly", "it does not matter which",
+        "no matter which ones", "no matter which", "no matter where", "in whatever order",
+        "in any order", "order does not matter", "aswell", "as well", "let me think",
+        "let me see", "let us see", "thanks a lot", "thank you", "thank you for", "thanks for",
+        "thank you very much", "would you please", "would you mind", "at end", "in end", "at all",
+        "whatsoever", "after that", "can you", "can i", "can we", "can u", "could u", "of course",
+        "for me", "ends up", "end up", "ended up", "so kind and", "in a way that",
+        "final arrangement", "final state", "goal state", "end state", "that is it",
+        "that is all", "thats it", "thats all", "how about", "what about", "is it possible",
+        "would it be possible", "what i want is", "what i need is", "at last", "at first",
+        "at all times", "be a dear and", "be an angel and", "many thanks", "pardon me",
+        "excuse me", "if i may", "with your permission", "what i would like is", "for now",
+        "right now", "for today", "if possible", "before next run", "before next trial",
+        "for next run", "for next trial", "neither more nor less", "no more and no less",
+        "no more no less", "sorry for trouble", "sorry for bother", "sorry to bother you",
+        "would you be so kind and", "as long as", "provided that",
+    ),
+)  # fmt: skip
+#: People who correct themselves.
+_CORRECTIONS: Final = _all_as(
+    (CORRECTION,),
+    (
+        "no wait", "wait no", "wait", "no sorry", "sorry no", "sorry", "i mean", "i meant",
+        "or rather", "no actually", "actually no", "actually", "make that", "oops",
+        "correction", "no i mean", "no i meant", "sorry i mean", "sorry i meant", "oh wait",
+        "oh no", "oops no", "no wait a moment", "rather", "no no", "hang on", "hold on",
+        "wait a minute", "nope",
+    ),
+) | _all_as(
+    (TAKEN_BACK,),
+    (
+        f"{verb} {what}"
+        for verb in ("scratch", "forget", "cancel", "strike", "ignore")
+        for what in ("that", "it", "this", "last one")
+    ),
+)  # fmt: skip
+_REST: Final = frozenset({"rest", "others", "remainder", "remaining blocks", "other blocks",
+                          "everything else", "all others"})  # fmt: skip
+#: What is not asked for.
+_UNASKED: Final = _all_as(
+    (),
+    (
+        text.replace("REST", rest)
+        for rest in sorted(_REST)
+        for text in (
+            "leave REST", "leave REST alone", "leave REST be", "leave REST as it is",
+            "leave REST as they are", "leave REST where it is", "leave REST where they are",
+            "i do not care about REST", "i do not care where REST goes",
+            "i do not care where REST go", "do not care about REST", "REST does not matter",
+            "REST do not matter", "REST anywhere", "REST can go anywhere", "REST wherever",
+            "do not touch REST", "never mind REST",
+        )
+    ),
+)  # fmt: skip
+#: Several words that stand for others, the longest first; looked for everywhere.
+MERGED: Final[Wordings] = {
+    **_SIDE_BY_SIDE, **_NUMBERS, **_NOTHING, **_UNASKED, **_CORRECTIONS,
+    ("right", "at", "bottom"): ("at", "bottom"),
+    ("right", "at", "top"): ("at", "top"),
+    ("at", "top", "of"): ("at-top-of",),
+    ("at", "very", "top", "of"): ("at-top-of",),
+    ("on", "very", "top", "of"): ("at-top-of",),
+    ("ontop",): ("on", "top"),
+    ("on", "top", "off"): ("on", "top", "of"),
+    ("left", "off"): ("left", "of"),
+    ("right", "off"): ("right", "of"),
+    ("out", "of"): ("not", "in"),
+    ("not", "allowed"): ("not",),
+    ("not", "supposed"): ("not",),
+    ("pick", "up"): ("take",),
+    ("lift", "up"): ("take",),
+    ("free", "up"): ("clear",),
+    ("clear", "off"): ("clear",),
+    ("clear", "out"): ("clear",),
+    ("can", "be"): ("be",),
+    ("has", "to"): ("must",),
+    ("have", "to"): ("must",),
+    ("lets",): ("let",),
+    **dict.fromkeys(
+        (
+            ("not", "have", "to"),
+            ("not", "need"),
+            ("not", "need", "to"),
+            ("need", "not"),
+            ("neednt",),
+            ("not", "necessarily"),
+            ("not", "necessary"),
+            ("not", "required"),
+            ("no", "need", "for"),
+            ("no", "need", "to"),
+            ("not", "mind"),
+            ("not", "care"),
+        ),
+        ("not-asked-for",),
+    ),
+    ("including",): ("and",),
+    ("next", "too"): ("next", "to"),
+    ("anywhere", "but"): ("not", "in"),
+    ("anywhere", "except"): ("not", "in"),
+    ("anywhere", "but", "in"): ("not", "in"),
+    ("anywhere", "except", "in"): ("not", "in"),
+    ("in", "any", "stack", "but"): ("not", "in"),
+    ("in", "any", "stack", "except"): ("not", "in"),
+    ("make", "it", "so"): ("make",),
+    ("pile", "up"): ("build",),
+    ("stack", "up"): ("build",),
+    ("build", "up"): ("build",),
+    ("in", "stack", "next", "to"): ("next", "to"),
+    ("in", "a", "stack", "next", "to"): ("next", "to"),
+    ("in", "stack", "beside"): ("next", "to"),
+    ("same", "for"): ("so", "should"),
+    ("same", "goes", "for"): ("so", "should"),
+    ("likewise",): ("so", "should"),
+    ("in", "which"): ("where",),
+    ("that", "one"): ("it",),
+    ("this", "one"): ("it",),
+    ("in", "neighbouring", "stacks"): ("next", "to", "each-other"),
+    ("in", "neighboring", "stacks"): ("next", "to", "each-other"),
+    ("in", "adjacent", "stacks"): ("next", "to", "each-other"),
+    ("share", "a", "stack"): ("in", "same", "stack"),
+    ("in", "one", "stack"): ("in", "same", "stack"),
+    ("in", "one", "pile"): ("in", "same", "stack"),
+    ("in", "one", "tower"): ("in", "same", "stack"),
+    ("all", "way", "to", "left"): ("in", "left stack"),
+    ("all", "way", "to", "right"): ("in", "right stack"),
+    ("all", "way", "on", "left"): ("in", "left stack"),
+    ("all", "way", "on", "right"): ("in", "right stack"),
+    ("on", "table", "in"): ("on",),
+    ("on", "table", "at"): ("on",),
+    ("on", "floor", "of"): ("on",),
+    ("on", "ground", "of"): ("on",),
+    ("on", "ground", "in"): ("on",),
+    ("such", "that"): ("where",),
+    ("asked", "for"): ("want",),
+    ("asks", "for"): ("want",),
+    ("would", "like", "you"): ("want",),
+    ("would", "like"): ("want",),
+    ("want", "you"): ("want",),
+    ("need", "you"): ("want",),
+    ("like", "you"): ("want",),
+    ("build", "a", "tower"): ("build",),
+    ("make", "a", "tower"): ("build",),
+    ("build", "a", "stack"): ("build",),
+    ("make", "a", "stack"): ("build",),
+}  # fmt: skip
