@@ -212,7 +212,7 @@ def test_a_defect_is_reported_and_the_node_lives_on(
         raise ZeroDivisionError("of all things")
 
     with monkeypatch.context() as patch:
-        patch.setattr("planner_node.node.make_plan", defect)
+        patch.setattr("planner_node.node.plan_in", defect)
         answer = bench.client.plan("red on green")
     assert answer.status == Status.INTERNAL_ERROR
     assert "ZeroDivisionError: of all things" in answer.message
