@@ -69,5 +69,5 @@ def test_a_parameter_that_cannot_be_is_one_sentence(start: Start) -> None:
     code, _, stderr = finish(start(*NODE, "--ros-args", "-p", "robot:=nobody"))
     assert code == 2
     assert stderr.strip().splitlines()[-1] == (
-        "cannot start: parameter robot = 'nobody' is not a known arm; known: panda"
+        "cannot start: parameter robot = 'nobody' is not a known arm; known: kuka_iiwa, panda"
     )

@@ -196,7 +196,7 @@ def test_the_command_says_what_comes_and_why_not(ros_context: Any, start: Start)
     assert code == 0
     assert stdout.strip() == (
         "disturbance 1: red_box is pushed with 5 N towards (1, 0, 0) for 0.1 s, at the next lift "
-        "to more than 0.05 m"
+        "to more than 0.015 m"
     )
     code, _, stderr = finish(start("sim_node", "disturb", "take_away", "teapot"))
     assert code == 1

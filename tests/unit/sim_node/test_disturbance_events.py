@@ -56,14 +56,14 @@ def test_events_come_when_joints_and_heights_say_so(world: World) -> None:
     world.reset((("red_box",), (), ()))
     (grasp,), (release,), (lift,) = moments(
         world,
-        *(EventWatch(world, kind, 1, "", 0.05) for kind in ("grasp", "release", "in_air")),
+        *(EventWatch(world, kind, 1, "", 0.015) for kind in ("grasp", "release", "in_air")),
     )
     heights, widths, commanded = recorded(world)
     squeezed = (np.abs(widths - 0.045) < 0.002) & (commanded < widths - 0.004)
     assert abs(grasp - int(np.argmax(squeezed))) <= 12
     last = len(squeezed) - 1 - int(np.argmax(squeezed[::-1]))
     assert abs(release - last) <= 24
-    assert lift == pytest.approx(np.argmax(heights > 0.0225 + 0.05), abs=2)
+    assert lift == pytest.approx(np.argmax(heights > 0.0225 + 0.015), abs=2)
     assert grasp < lift < release
 
 
@@ -71,8 +71,8 @@ def test_the_second_event_and_that_of_another_block_are_waited_for(world: World)
     world.reset((("red_box",), (), ()))
     seen = moments(
         world,
-        EventWatch(world, "grasp", 2, "", 0.05),
-        EventWatch(world, "grasp", 1, "blue_box", 0.05),
+        EventWatch(world, "grasp", 2, "", 0.015),
+        EventWatch(world, "grasp", 1, "blue_box", 0.015),
         EventWatch(world, "in_air", 1, "red_box", 0.45),
     )
     assert seen == [[], [], []]

@@ -147,7 +147,7 @@ def test_too_many_at_once_are_refused(world: World) -> None:
         ("jam", {"delay": 2.0}, "for 3 s, in 2 s"),
         ("jam", {"when": "grasp"}, "for 3 s, at the next grasp"),
         ("slip", {"when": "in_air", "count": 2, "of": "red_box"},
-         "for 0.5 s, at the 2nd lift of red_box to more than 0.05 m"),
+         "for 0.5 s, at the 2nd lift of red_box to more than 0.015 m"),
         ("jam", {"when": "release", "count": 3, "delay": 0.5}, "0.5 s after the 3rd release"),
     ],
 )  # fmt: skip

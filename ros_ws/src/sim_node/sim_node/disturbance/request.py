@@ -28,7 +28,7 @@ MOST_HEIGHT: Final = 0.5
 MOST_COUNT: Final = 1000
 
 #: A lift counts from this height on, if nothing else is said [m].
-DEFAULT_HEIGHT: Final = 0.05
+DEFAULT_HEIGHT: Final = 0.015
 
 
 class DisturbanceError(ValueError):
