@@ -9,7 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from motion_node import PANDA, MotionPlanner
+from motion_node import PANDA, MotionPlanner, PathSettings, Settings
 from motion_node.timing.trajectory import Trajectory
 from scene_graph import Move, Stacks
 from sim_node import ArmController, World, robot_description, true_scene_graph
@@ -24,11 +24,12 @@ CARRIED = "red_box"
 
 @lru_cache(maxsize=1)
 def carrying() -> Trajectory:
-    """From home, red_box to the middle, and home again."""
+    """From home, red_box to the middle, and home again; high enough to fall."""
     with World() as world:
         world.reset(LAYOUT, SEED)
         graph = true_scene_graph(world)
-    planner = MotionPlanner(robot_description())
+    settings = Settings(path=PathSettings(steps=14, vertical=4, lift=0.08))
+    planner = MotionPlanner(robot_description(), settings=settings)
     return planner.solve(
         graph, [Move(0, 1)], np.array(PANDA.home), np.array([0.04, 0.04])
     ).trajectory

@@ -84,7 +84,7 @@ def test_a_slipping_block_falls_freely_and_is_not_put_anywhere(scene: DisturbedW
         if len(scene.told) == 2 and not begun:
             begun.append(len(heights))
 
-    scene.disturb("slip", when="in_air")
+    scene.disturb("slip", when="in_air", height=0.04)
     scene.carry_to_the_end(watch)
     fall = np.array(heights[begun[0] :])
     assert fall[0] > 0.06
