@@ -3,8 +3,8 @@
 
 A sentence is read right if the goal is true in exactly those states in which its meaning is. The
 hundred in ``goal_sentences.json`` were written, with their meanings, by somebody who did not know
-the reader, and those in ``goal_sentences_of_twenty.json`` by another one, as twenty people would put
-it; those whose meaning is null are to be asked back.
+the reader, and those in ``goal_sentences_of_twenty.json`` by another one, as twenty people would
+put it; those whose meaning is null are to be asked back.
 """
 
 from __future__ import annotations
