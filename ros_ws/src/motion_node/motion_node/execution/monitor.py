@@ -57,7 +57,9 @@ class MonitorSettings:
         settle_seconds: within which the end is to be reached after the trajectory's end [s].
         grasp_tolerance: a finger this near to where it was sent holds nothing [m].
         grasp_seconds: for how long the fingers must say so [s].
-        finger_seconds: for how long they must stand wider, or narrower, than they should [s].
+        close_seconds: for how long they must stand wider than what they are to hold [s]; short, as
+            open fingers are carried down beside the next blocks.
+        open_seconds: for how long they must stand narrower than they should [s].
     """
 
     tracking_tolerance: float = 0.15
@@ -68,7 +70,8 @@ class MonitorSettings:
     settle_seconds: float = 3.0
     grasp_tolerance: float = 0.002
     grasp_seconds: float = 0.1
-    finger_seconds: float = 0.3
+    close_seconds: float = 0.15
+    open_seconds: float = 0.3
 
 
 @dataclass(frozen=True)
@@ -143,8 +146,8 @@ class Monitor:
         )
         self._off = Lasting(settings.tracking_seconds)
         self._empty = Lasting(settings.grasp_seconds)
-        self._not_closed = Lasting(settings.finger_seconds)
-        self._not_opened = Lasting(settings.finger_seconds)
+        self._not_closed = Lasting(settings.close_seconds)
+        self._not_opened = Lasting(settings.open_seconds)
         self._travels = _travels(trajectory)
         # Where each interval ends, and where the block that it is about stops closing fingers.
         self._ends = np.array([interval.end for interval in trajectory.intervals])
