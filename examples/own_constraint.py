@@ -74,7 +74,7 @@ def highest(planner: MotionPlanner) -> float:
 def main() -> None:
     free = MotionPlanner(robot_description(), PANDA)
     print(f"without a shelf the hand rises to {highest(free):.3f} m")
-    for height in (0.06, 0.03):
+    for height in (0.135, 0.03):
         constraints = [*default_constraints(PANDA), BelowShelf(height)]
         planner = MotionPlanner(robot_description(), PANDA, constraints=constraints)
         try:
