@@ -5,13 +5,12 @@ from __future__ import annotations
 
 import threading
 
-import numpy as np
 import pytest
+from physical_arm import PhysicalArm
 from tamp_runtime.messages.stamps import nanoseconds
 from tamp_runtime.motion_report import ArmPlace, MotionReason, MotionReport, MotionState
 
 from motion_node.conversions import trajectory_to_two_messages
-from motion_node.execution.arm_state import ArmState, ArmStateBox
 from motion_node.execution.condition import Condition
 from motion_node.execution.executive import Executive
 from motion_node.execution.follow import Follower
@@ -19,7 +18,6 @@ from motion_node.execution.plan import Plan
 from motion_node.execution.settings import ExecutionSettings, StepSettings
 from motion_node.planner import MotionPlanner
 from motion_node.robots import PANDA
-from motion_node.robots.joints import JointValues
 from motion_node.timing.trajectory import Trajectory
 from scene_graph import Move
 from sim_node.conversions import trajectory_arrays
@@ -31,37 +29,17 @@ LAYOUT = (("red_box", "green_box"), ("blue_box",), ())
 SETTINGS = ExecutionSettings(in_step=StepSettings())
 
 
-class PhysicalArm:
-    """The simulator's arm; whoever waits for a joint state makes the physics go on.
+class ApartArm(PhysicalArm):
+    """One whose fingers have a controller of their own.
 
     Attributes:
         deaf: the topics whose messages do not arrive.
     """
 
-    closed, problem = False, ""
-
     def __init__(self, world: World) -> None:
-        self._world, self._controllers = world, TwoControllers(world)
-        self._box = ArmStateBox(self.now)
+        self._controllers = TwoControllers(world)
         self.deaf: tuple[str, ...] = ()
-        self._put()
-
-    def now(self) -> float:
-        return float(self._world.time)
-
-    def newest(self) -> ArmState | None:
-        return self._box.newest()
-
-    def wait(self, after: ArmState | None, timeout: float) -> ArmState | None:
-        for _ in range(4):
-            self._controllers.update()
-            self._world.step()
-        self._put()
-        return self._box.wait(after, timeout)
-
-    def _put(self) -> None:
-        joints = np.split(self._world.joint_state()[0], [len(PANDA.arm_joints)])
-        self._box.put(self._world.time, JointValues(*joints))
+        super().__init__(world, self._controllers)
 
     def send(self, trajectory: Trajectory, begins: float | None) -> None:
         messages = trajectory_to_two_messages(trajectory, PANDA, begins)
@@ -75,7 +53,7 @@ class PhysicalArm:
 
 def carry_out(world: World, planner: MotionPlanner, deaf: tuple[str, ...] = ()) -> MotionReport:
     """Red and green on blue, the upper one first."""
-    arm = PhysicalArm(world)
+    arm = ApartArm(world)
     arm.deaf = deaf
     follower = Follower(arm, arm.send, SETTINGS)
     condition = Condition(

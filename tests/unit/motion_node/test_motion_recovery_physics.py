@@ -8,9 +8,9 @@ from contextlib import suppress
 
 import numpy as np
 import pytest
+from physical_arm import PhysicalArm
 from tamp_runtime.motion_report import ArmPlace, MotionReport, MotionState
 
-from motion_node.execution.arm_state import ArmState, ArmStateBox
 from motion_node.execution.condition import Condition
 from motion_node.execution.executive import Executive
 from motion_node.execution.follow import Follower
@@ -18,7 +18,6 @@ from motion_node.execution.plan import Plan
 from motion_node.execution.settings import ExecutionSettings
 from motion_node.planner import MotionPlanner
 from motion_node.robots import PANDA
-from motion_node.robots.joints import JointValues
 from motion_node.timing.trajectory import Trajectory
 from scene_graph import Move
 from sim_node.controller import ArmController
@@ -27,8 +26,8 @@ from sim_node.trajectory import TrajectoryError
 from sim_node.world import World
 
 
-class PhysicalArm:
-    """The arm of a world; whoever waits for its state makes the world's time go on.
+class FaultyArm(PhysicalArm):
+    """One that goes wrong as it is told to.
 
     Attributes:
         cut: shares of the next trajectories after which they end.
@@ -36,34 +35,16 @@ class PhysicalArm:
         stop: set as soon as a finger is nearer to the middle than ``stop_below`` [m].
     """
 
-    closed, problem = False, ""
-
     def __init__(self, world: World) -> None:
-        self._world, self._controller = world, ArmController(world)
-        self._box = ArmStateBox(self.now)
+        self._controller = ArmController(world)
         self.cut: list[float] = []
         self.deaf_fingers = False
         self.stop, self.stop_below = threading.Event(), 0.0
-        self._put()
+        super().__init__(world, self._controller)
 
-    def now(self) -> float:
-        return float(self._world.time)
-
-    def newest(self) -> ArmState | None:
-        return self._box.newest()
-
-    def wait(self, after: ArmState | None, timeout: float) -> ArmState | None:
-        for _ in range(4):
-            self._controller.update()
-            self._world.step()
-        self._put()
-        return self._box.wait(after, timeout)
-
-    def _put(self) -> None:
-        joints = np.split(self._world.joint_state()[0], [len(PANDA.arm_joints)])
-        if joints[1].min() < self.stop_below:
+    def observe(self, fingers: np.ndarray) -> None:
+        if fingers.min() < self.stop_below:
             self.stop.set()
-        self._box.put(self._world.time, JointValues(*joints))
 
     def send(self, trajectory: Trajectory, _begins: float | None = None) -> None:
         if self.cut:
@@ -75,7 +56,7 @@ class PhysicalArm:
             self._controller.follow(PANDA.joint_names, trajectory.times, positions, velocities)
 
 
-def carry_out(arm: PhysicalArm, world: World, planner: MotionPlanner) -> MotionReport:
+def carry_out(arm: FaultyArm, world: World, planner: MotionPlanner) -> MotionReport:
     follower = Follower(arm, arm.send, ExecutionSettings())
     condition = Condition(
         arm, lambda: follower.grip, planner.model.home, 0.04, planner.model.tool_at
@@ -92,7 +73,7 @@ def test_fault_2_a_block_ends_on_a_stack_though_trajectories_end_early(
 ) -> None:
     with World() as world:
         world.reset((("red_box", "green_box"), ("blue_box",), ()), 0)
-        arm = PhysicalArm(world)
+        arm = FaultyArm(world)
         arm.cut = list(cut)
         end = carry_out(arm, world, planner)
         assert end.state is MotionState.FAILED
@@ -104,7 +85,7 @@ def test_fault_2_a_block_ends_on_a_stack_though_trajectories_end_early(
 def test_fault_4_fingers_that_never_close_leave_the_blocks_standing(planner: MotionPlanner) -> None:
     with World() as world:
         world.reset((("red_box", "green_box"), ("blue_box",), ()), 0)
-        arm = PhysicalArm(world)
+        arm = FaultyArm(world)
         arm.deaf_fingers = True
         end = carry_out(arm, world, planner)
         assert end.message.startswith("the fingers did not close on green_box: they stand 80 mm")
@@ -119,7 +100,7 @@ def test_a_stop_while_the_fingers_close_leaves_the_block_where_it_is(
     """Fingers that are 25 mm from the middle touch the block, 45 mm wide, before they turn."""
     with World() as world:
         world.reset((("red_box", "green_box"), ("blue_box",), ()), 0)
-        arm = PhysicalArm(world)
+        arm = FaultyArm(world)
         arm.stop_below = below
         end = carry_out(arm, world, planner)
         assert end.state is MotionState.CANCELLED

@@ -55,6 +55,18 @@ class Seen:
     here: Tensor
 
 
+def first_layers(channels: int) -> nn.Sequential:
+    """Images (n, 3, s, s) -> (n, channels, s / 4, s / 4); what every answerer begins with."""
+    return nn.Sequential(
+        nn.Conv2d(3, 32, 5, stride=2, padding=2),
+        nn.BatchNorm2d(32),
+        nn.ReLU(),
+        nn.Conv2d(32, channels, 3, stride=2, padding=1),
+        nn.BatchNorm2d(channels),
+        nn.ReLU(),
+    )
+
+
 class PlaceSight(nn.Module):
     """Images (n, 3, 128, 128) -> what is seen of 32 x 32 places, (n, 1024, 50).
 
@@ -65,14 +77,7 @@ class PlaceSight(nn.Module):
 
     def __init__(self) -> None:
         super().__init__()
-        self.start = nn.Sequential(
-            nn.Conv2d(3, 32, 5, stride=2, padding=2),
-            nn.BatchNorm2d(32),
-            nn.ReLU(),
-            nn.Conv2d(32, _SEEN, 3, stride=2, padding=1),
-            nn.BatchNorm2d(_SEEN),
-            nn.ReLU(),
-        )
+        self.start = first_layers(_SEEN)
         self.around = nn.ModuleList(
             nn.Sequential(
                 nn.Conv2d(_SEEN, _SEEN, 3, padding=reach, dilation=reach),
