@@ -38,7 +38,8 @@ def main() -> int:
         print("stopped; the same command goes on from there")
         return 130
     print_rows(rows)
-    print(write_result("latent_qa", "make eval-latent-qa", rows, time.perf_counter() - begun))
+    command = "make eval-latent-qa" + (f' ARGS="{" ".join(sys.argv[1:])}"' if sys.argv[1:] else "")
+    print(write_result("latent_qa", command, rows, time.perf_counter() - begun))
     return 0
 
 

@@ -18,6 +18,16 @@ MAP: Final = 32
 _STRIDE: Final = IMAGE // MAP
 
 
+def half_precision(wanted: bool = True) -> torch.autocast:
+    """Within it convolutions are done in bfloat16, where the processor can: half the time.
+
+    Args:
+        wanted: False for a context in which nothing changes.
+    """
+    able = torch.ops.mkldnn._is_mkldnn_bf16_supported()
+    return torch.autocast("cpu", torch.bfloat16, enabled=wanted and able)
+
+
 class _Residual(nn.Module):
     def __init__(self, width: int) -> None:
         super().__init__()

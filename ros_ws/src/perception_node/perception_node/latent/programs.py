@@ -30,11 +30,15 @@ from typing import Any, Final
 import torch
 from torch import Tensor, nn
 
+from .networks import half_precision
+
 #: Edge of the map of places, and channels of what is seen of each.
 _EDGE: Final = 32
 _SEEN: Final = 48
 #: Width of what relations are told by.
 _BESIDE: Final = 32
+#: Places are told from -8 to 8, so that what is a little further left differs enough to be learnt.
+_SPAN: Final = 8.0
 _TINY: Final = 1e-6
 
 
@@ -86,16 +90,17 @@ class PlaceSight(nn.Module):
             )
             for reach in (1, 2, 4)
         )
-        line = torch.linspace(-1.0, 1.0, _EDGE)
+        line = torch.linspace(-_SPAN, _SPAN, _EDGE)
         where = torch.stack(torch.meshgrid(line, line, indexing="ij"))
         self.register_buffer("where", where.flatten(1).T[None].contiguous())
 
     def forward(self, images: Tensor) -> Tensor:
         """See the class."""
-        seen = self.start(images - 0.5)
-        for layer in self.around:
-            seen = seen + layer(seen)
-        places = seen.flatten(2).transpose(1, 2)
+        with half_precision(self.training):
+            seen = self.start(images - 0.5)
+            for layer in self.around:
+                seen = seen + layer(seen)
+        places = seen.float().flatten(2).transpose(1, 2)
         return torch.cat([places, self.where.expand(len(places), -1, -1)], dim=2)
 
 

@@ -16,6 +16,7 @@ from torch.nn import functional
 from perception_node.training.run import Stateful, TrainingRun
 
 from .answering import ANSWERERS
+from .networks import half_precision
 from .state_encoder import EncoderConfig, StateEncoder, values_of
 
 #: Settings of eq. 4.2: α of the reconstruction error, β of the divergence.
@@ -111,8 +112,12 @@ class QaTrainer(TrainingRun[dict[str, float]]):
     def advance(self) -> dict[str, float]:
         """See :class:`TrainingRun`."""
         images, questions, owners, answers = self._batch()
-        quantised, _, own = self.encoder.quantiser(self.encoder.encoder(images))
-        shown = self.encoder.decoder(quantised)
+        with half_precision():
+            features = self.encoder.encoder(images)
+        quantised, _, own = self.encoder.quantiser(features.float())
+        with half_precision():
+            shown = self.encoder.decoder(quantised)
+        shown = shown.float()
         of_image = self.answerer(images, questions, owners)
         likelihood = functional.cross_entropy(of_image, answers)
         error = (shown - images).square().mean()
