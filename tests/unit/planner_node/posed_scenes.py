@@ -39,9 +39,7 @@ def centre(stack: int, level: int) -> Point:
 
 def block(name: str, position: Point, visible: float = 0.95) -> SceneObject:
     color, kind, *_ = name.split("_")
-    return SceneObject(
-        name, color, kind, position, size=(EDGE,) * 3, confidence=visible
-    )
+    return SceneObject(name, color, kind, position, size=(EDGE,) * 3, confidence=visible)
 
 
 def frame(

@@ -195,7 +195,7 @@ def test_a_block_is_missed_below_the_hand_but_not_behind_it() -> None:
     _, watch, course = course_of(2)
     assert watch.see(course[6].frame({"green_box": None}, **fields))
     _, watch, course = course_of(2 * len(MOVES))
-    for item in course[6:]:
+    for item in course[6:-1]:
         assert not watch.see(item.frame({"blue_box": None}, **fields))  # on two others
     assert watch.see(course[-1].frame({"red_box": None}, **{**fields, "hidden": (0.0,) * 3}))
 
@@ -223,7 +223,8 @@ def test_of_two_blocks_that_look_alike_either_may_be_the_first() -> None:
     plan = plan_of(stacks, (Move(0, 2),))
     watch = PlanWatch(plan)
     other = {"red_box": "red_box_2", "red_box_2": "red_box"}
-    for item in instants(plan):
+    *course, last = instants(plan)
+    for item in course:
         if item.begins:
             watch.hear(item.report(plan))
         past = item.step > 1 or (item.step == 1 and item.hand == 2)
@@ -235,7 +236,7 @@ def test_of_two_blocks_that_look_alike_either_may_be_the_first() -> None:
             )
             seen = replace(seen, graph=replace(seen.graph, objects=objects))
         assert not watch.see(seen), watch.contradiction
-    assert watch.see(item.frame({"red_box": (0.5, 0.03, 0.3)}))
+    assert watch.see(last.frame({"red_box": (0.5, 0.03, 0.3)}))
 
 
 def test_a_block_that_is_gone_is_missed_only_where_nothing_hides_its_place() -> None:

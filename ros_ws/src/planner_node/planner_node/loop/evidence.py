@@ -159,7 +159,9 @@ class Evidence:
             return
         if not all(item.size):  # it lies or leans, and where is known only so well
             if not any(_is_at(item, rest) for rest in options):
-                self._suspect(Finding(name, Kind.ELSEWHERE, options[-1], item.position_world), steps)
+                self._suspect(
+                    Finding(name, Kind.ELSEWHERE, options[-1], item.position_world), steps
+                )
             return
         for rest in options:
             if rest.holds(item.position_world):
@@ -171,9 +173,7 @@ class Evidence:
             return
         held &= item.position_world[2] > options[-1].position_world[2] + LIFTED
         doubt = item.confidence < PLAINLY or any(_is_at(item, rest) for rest in options)
-        finding = Finding(
-            name, Kind.ELSEWHERE, options[-1], item.position_world, 1 + doubt + held
-        )
+        finding = Finding(name, Kind.ELSEWHERE, options[-1], item.position_world, 1 + doubt + held)
         self._suspect(finding, steps)
 
     def _suspect(self, finding: Finding, steps: range) -> None:
@@ -233,7 +233,7 @@ def _is_clear(rest: Rest, places: Iterable[Place]) -> bool:
 def _is_lifted(item: SceneObject, rest: Rest) -> bool:
     """Whether a block is right above where it rested."""
     dx, dy, dz = (a - b for a, b in zip(item.position_world, rest.position_world))
-    return math.hypot(dx, dy) <= OVER and dz > 0.0
+    return math.hypot(dx, dy) <= OVER and dz > LIFTED
 
 
 def _over_a_place(item: SceneObject, places: Iterable[Place]) -> bool:

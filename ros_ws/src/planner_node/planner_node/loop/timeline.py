@@ -10,7 +10,7 @@ from tamp_runtime.motion_report import MotionReport, MotionState
 #: A step may have begun this much before the report that says so was stamped: that comes late, and
 #: the times are those of different nodes [ns].
 LATE: Final = 500_000_000
-#: What it put down has come to rest this much after the report that it ended, which comes late [ns].
+#: What it put down has come to rest this much after the report that it ended [ns].
 SETTLED: Final = 200_000_000
 
 
