@@ -68,7 +68,7 @@ def test_what_nobody_disturbs_is_not_stopped_and_a_swap_is_noticed_under_way(gra
         assert told and "since move" in told[0]
         assert told[0] in result.message
 
-        # Cyan is carried on to green's place, but green is gone before: nothing is put there.
+        # Green, on which the others are to stand, is gone while the first of them is fetched.
         planner.start("cyan on green, red on cyan, blue on red", timeout=PATIENCE)
         wait_for_phase(planner, "pick")
         gone = Disturb.Request(kind=Disturb.Request.TAKE_AWAY, blocks=["green_box"])
@@ -77,6 +77,5 @@ def test_what_nobody_disturbs_is_not_stopped_and_a_swap_is_noticed_under_way(gra
         result = planner.result(timeout=5.0 * PATIENCE)
         assert result.status == AchieveGoal.Result.UNKNOWN_OBJECT, result.message
         told = [cause for cause in result.causes if "is not seen any more" in cause]
-        assert told and told[0].startswith("green_box was expected on stack0")
+        assert told and "green_box was expected on stack0" in told[0]
         assert told[0] in result.message and "green_box cannot be seen" in result.message
-        assert result.moves_executed <= 1

@@ -156,7 +156,7 @@ def test_a_single_frame_is_no_contradiction_that_is_not_plain() -> None:
     """The block is a little beside where it was, or hardly seen, or what is seen may be it."""
     x, y, z = centre(1, 0)
     odd: list[dict[str, Any]] = [
-        {"moved": {"green_box": (x + 0.02, y, z)}},
+        {"moved": {"green_box": (x + 0.018, y, z)}},
         {"moved": {"green_box": centre(2, 3)}, "visible": 0.5},
         {"moved": {"green_box": None, "grey_box": (x, y, z)}},
     ]
@@ -203,8 +203,10 @@ def test_a_block_is_missed_below_the_hand_but_not_behind_it() -> None:
 def test_a_block_that_fell_is_told_by_its_colour_and_by_where_it_lies() -> None:
     _, watch, course = course_of(2)
     lying = {"green_box": (0.55, 0.06, 0.02)}
-    told = [watch.see(item.frame(fallen=lying, shape="cylinder")) for item in course[6:8]]
-    assert told == [False, True]
+    for item in course[6:8]:  # it may be a part of the arm, while the block is behind the hand
+        hidden = (0.0, 0.5, 0.0)
+        assert not watch.see(item.frame(fallen=lying, shape="cylinder", hidden=hidden))
+    assert watch.see(course[8].frame(fallen=lying, shape="cylinder"))
     assert watch.contradiction.startswith("green_box was expected on stack1 and is seen 78 mm")
 
 

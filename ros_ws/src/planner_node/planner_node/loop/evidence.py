@@ -38,10 +38,12 @@ class Kind(Enum):
 
 #: A part of the arm can look like a block, though not in so many frames at one point.
 FOREIGN_FRAMES: Final = 3
-#: A block of which as much is seen, and that is this far from where it was to be [m], is plainly
-#: elsewhere.
+#: A block of which as much is seen, and that is this much further from where it was to be than it
+#: may be [m], is plainly elsewhere.
 PLAINLY: Final = 0.6
-FAR: Final = 0.03
+BEYOND: Final = 0.005
+#: What is seen this near to where a block was to be [m] may be this block, badly measured.
+NEAR: Final = 0.03
 #: The hand lifts what it takes; what is seen no higher than this over its rest [m] it has not.
 LIFTED: Final = 0.01
 
@@ -146,22 +148,22 @@ class Evidence:
         about_to_rise: str,
         steps: range,
     ) -> None:
-        if item is None:
+        lies = item is not None and not all(item.size)
+        if item is not None and lies and any(_is_at(item, rest) for rest in options):
+            return  # it stands, and is measured badly
+        if item is None or lies:
+            # What lies may be a part of the arm that looks like it: where it was to be tells.
             if all(_is_seen(rest, graph.places) for rest in options):
                 # Something else in its place may be it, by another name. Where the hand is, it may
                 # have been taken, and the report of that be on its way.
                 doubt = any(_is_at(other, rest) for other in graph.objects for rest in options)
                 held = name == about_to_rise and not _is_clear(options[-1], graph.places)
-                finding = Finding(name, Kind.UNSEEN, options[-1], None, 1 + doubt + held)
-                self._suspect(finding, steps)
+                kind, where = Kind.UNSEEN, None
+                if item is not None:
+                    kind, where = Kind.ELSEWHERE, item.position_world
+                self._suspect(Finding(name, kind, options[-1], where, 1 + doubt + held), steps)
             return
         if item.confidence < MIN_VISIBLE:
-            return
-        if not all(item.size):  # it lies or leans, and where is known only so well
-            if not any(_is_at(item, rest) for rest in options):
-                self._suspect(
-                    Finding(name, Kind.ELSEWHERE, options[-1], item.position_world), steps
-                )
             return
         for rest in options:
             if rest.holds(item.position_world):
@@ -172,7 +174,8 @@ class Evidence:
         if held and _is_lifted(item, options[-1]):
             return
         held &= item.position_world[2] > options[-1].position_world[2] + LIFTED
-        doubt = item.confidence < PLAINLY or any(_is_at(item, rest) for rest in options)
+        off = min(math.dist(item.position_world, r.position_world) - r.tolerance for r in options)
+        doubt = item.confidence < PLAINLY or off <= BEYOND
         finding = Finding(name, Kind.ELSEWHERE, options[-1], item.position_world, 1 + doubt + held)
         self._suspect(finding, steps)
 
@@ -201,7 +204,7 @@ class Evidence:
 
 def _is_at(item: SceneObject, rest: Rest) -> bool:
     """Whether what is seen there may be a block that rests there, measured badly."""
-    return math.dist(item.position_world, rest.position_world) <= FAR
+    return math.dist(item.position_world, rest.position_world) <= NEAR
 
 
 def _is_on_something(item: SceneObject, graph: SceneGraph) -> bool:
