@@ -41,7 +41,8 @@ class Perceived:
         graph: of the scene; without objects where the observation cannot be used.
         status: whether it can be planned on.
         message: a sentence saying why not; empty if it can.
-        segments: which pixels the graph's objects are; None if it did not come that far.
+        segments: which pixels the graph's objects are, those that lie left out; None if it did not
+            come that far.
     """
 
     graph: SceneGraph
@@ -118,7 +119,7 @@ class Perception:
             return refused(verdict)
         # What is known of the others is told all the same; what has fallen may hide some of them.
         upright = [index for index, item in enumerate(surfaces) if item.upright]
-        seen, segments = segments, segments.without([item.index for item in fallen])
+        segments = segments.without([item.index for item in fallen])
         if fallen:
             coordinates = coordinates.of(upright)
             surfaces = tuple(surfaces[index] for index in upright)
@@ -131,7 +132,7 @@ class Perception:
             graph = with_fallen(graph, fallen)
         else:
             verdict = judge(graph, occlusion, standing, blocks, names, config)
-        return Perceived(graph, *with_grain(verdict, observation.noise), seen)
+        return Perceived(graph, *with_grain(verdict, observation.noise), segments)
 
     def _aligned(self, observation: Observation) -> Observation:
         """With edges where they are, where the places are seen and depth can be moved to colour."""
