@@ -38,6 +38,12 @@ def graph(ros_context: Any) -> Any:
     return context
 
 
+def wait_for_phase(planner: PlannerClient, phase: str) -> None:
+    """Until the arm is in such a phase."""
+    while not (feedback := planner.next_feedback(PATIENCE)) or feedback.motion.phase != phase:
+        assert not planner.is_done(), planner.result(PATIENCE).message
+
+
 @pytest.mark.timeout(900)
 def test_what_nobody_disturbs_is_not_stopped_and_a_swap_is_noticed_under_way(graph: Any) -> None:
     with PlannerClient(context=graph) as planner, DisturbClient(context=graph) as simulator:
@@ -50,8 +56,7 @@ def test_what_nobody_disturbs_is_not_stopped_and_a_swap_is_noticed_under_way(gra
         assert planner.result(timeout=3.0 * PATIENCE).status == AchieveGoal.Result.SUCCESS
 
         planner.start(GOAL, timeout=PATIENCE)
-        while not (feedback := planner.next_feedback(PATIENCE)) or feedback.motion.phase != "pick":
-            assert not planner.is_done(), planner.result(PATIENCE).message
+        wait_for_phase(planner, "pick")
         swap = Disturb.Request(kind=Disturb.Request.SWAP, blocks=["red_box", "green_box"])
         answer = simulator.disturb(swap, PATIENCE)
         assert answer.success, answer.message
@@ -62,3 +67,15 @@ def test_what_nobody_disturbs_is_not_stopped_and_a_swap_is_noticed_under_way(gra
         told = [cause for cause in result.causes if "was expected on" in cause]
         assert told and "since move" in told[0]
         assert told[0] in result.message
+
+        # Green, on which the others are to stand, is gone while the first of them is fetched.
+        planner.start("cyan on green, red on cyan, blue on red", timeout=PATIENCE)
+        wait_for_phase(planner, "pick")
+        gone = Disturb.Request(kind=Disturb.Request.TAKE_AWAY, blocks=["green_box"])
+        answer = simulator.disturb(gone, PATIENCE)
+        assert answer.success, answer.message
+        result = planner.result(timeout=5.0 * PATIENCE)
+        assert result.status == AchieveGoal.Result.UNKNOWN_OBJECT, result.message
+        told = [cause for cause in result.causes if "is not seen any more" in cause]
+        assert told and "green_box was expected on stack0" in told[0]
+        assert told[0] in result.message and "green_box cannot be seen" in result.message

@@ -88,6 +88,26 @@ def test_a_block_behind_something_is_visible_in_part() -> None:
     assert occlusion.visible_shares([None, None], CAMERA).tolist() == [1.0, 1.0]
 
 
+@pytest.mark.parametrize("height", [0.12, 0.17, 0.25, 0.33])
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_what_hangs_over_a_place_hides_nothing_below_what_is_seen_to(
+    place: int, height: float
+) -> None:
+    thing = Solid(BOX, (0.5, (-0.15, 0.0, 0.15)[place], height), half=0.03)
+    _, occlusion = seen([thing], 0)
+    seen_to = occlusion.seen_to[place]
+    assert all(to == 0.36 for index, to in enumerate(occlusion.seen_to) if index != place)
+    assert height - 0.03 - 0.09 < seen_to < height - 0.03
+    # A tower as high as that loses hardly a row to the thing; one that reaches it loses some.
+    for top, is_whole in ((seen_to, True), (height - 0.03, False)):
+        x, y, _ = thing.centre
+        column = Solid(BOX, (x, y, 0.5 * top), half=(0.035, 0.035, 0.5 * top))
+        _, alone = cast([column], CAMERA)
+        _, beside = cast([column, thing], CAMERA)
+        rows_lost = np.count_nonzero(((alone == 1) & (beside == 2)).any(axis=1))
+        assert (rows_lost <= 1) == is_whole
+
+
 def test_nothing_is_known_without_depth_camera_or_places() -> None:
     observation, _ = seen([Solid(BOX, (0.6, 0.0, 0.1))], 0)
     assert occlusion_of(replace(observation, depth=None)) == Occlusion()

@@ -37,6 +37,16 @@ def test_each_label_is_a_block_in_ascending_order() -> None:
     assert np.array_equal(segments.union(), labels > 0)
 
 
+def test_what_is_left_out_of_the_blocks_has_no_label_any_more() -> None:
+    labels = np.zeros((64, 64), np.uint16)
+    labels[:20, :20], labels[40:, 40:], labels[40:, :20] = 900, 7, 8
+    segments = Segments.from_labels(labels)
+    others = segments.without([1])
+    assert [segment.label for segment in others] == [7, 900]
+    assert np.array_equal(others.label_image, np.where(labels == 8, 0, labels))
+    assert segments.without([]) is segments and len(segments) == 3
+
+
 def test_a_label_of_a_few_pixels_is_a_speck() -> None:
     labels = np.zeros((256, 256), np.uint16)
     labels[3, 3:8] = 77

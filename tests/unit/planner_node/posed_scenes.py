@@ -38,9 +38,8 @@ def centre(stack: int, level: int) -> Point:
 
 
 def block(name: str, position: Point, visible: float = 0.95) -> SceneObject:
-    return SceneObject(
-        name, *split_object_name(name), position, size=(EDGE,) * 3, confidence=visible
-    )
+    color, kind, *_ = name.split("_")
+    return SceneObject(name, color, kind, position, size=(EDGE,) * 3, confidence=visible)
 
 
 def frame(
@@ -50,6 +49,9 @@ def frame(
     status: GraphStatus = GraphStatus.OCCLUDED,
     hidden: tuple[float, ...] = (0.0, 0.0, 0.0),
     visible: float = 0.95,
+    seen_to: tuple[float, ...] = (0.0, 0.0, 0.0),
+    fallen: Mapping[str, Point] | None = None,
+    shape: str = "box",
 ) -> Sighting:
     """What perception reports of a state.
 
@@ -57,6 +59,8 @@ def frame(
         moved: blocks that are elsewhere than their stack says, or not seen at all.
         hidden: shares of the columns over the places.
         visible: share of every block.
+        seen_to: heights to which the columns are not hidden [m].
+        fallen: blocks that lie where they were not measured, and look like such a shape.
     """
     positions: dict[str, Point | None] = {
         name: centre(index, level)
@@ -65,7 +69,12 @@ def frame(
     }
     positions |= moved or {}
     objects = [block(name, at, visible) for name, at in sorted(positions.items()) if at]
-    places = tuple(Place(i, at, share) for i, (at, share) in enumerate(zip(ROW_OF_THREE, hidden)))
+    for name, at in (fallen or {}).items():
+        color, _ = split_object_name(name)
+        objects = [item for item in objects if item.name != name]
+        objects.append(SceneObject(f"{color}_{shape}", color, shape, at, confidence=visible))
+    columns = enumerate(zip(ROW_OF_THREE, hidden, seen_to))
+    places = tuple(Place(i, at, share, height) for i, (at, share, height) in columns)
     seen = tuple(tuple(name for name in stack if positions[name]) for stack in stacks)
     graph = SceneGraph(tuple(objects), up_relations(seen), places, 0.5)
     return Sighting(graph, status, stamp=stamp, frame_id="world")

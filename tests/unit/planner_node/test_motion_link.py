@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 from loop_bench import START, FakeClock, sighting_of
 from tamp_runtime.motion_report import ArmPlace, MotionReport, MotionState
 
 from planner_node.errors import MotionBusyError, MotionSilentError
 from planner_node.goals import complete_goal
-from planner_node.loop import MotionLink, Plan, plan_for, scene_in
+from planner_node.loop import Clock, MotionLink, Plan, plan_for, scene_in
 from planner_node.search import make_plan
 from planner_node.settings import Settings
 
@@ -298,3 +300,34 @@ def test_a_clock_that_starts_anew_is_followed() -> None:
     link.receive(MotionReport("a", SUCCEEDED, arm=ArmPlace.HOME, stamp=500 * SECOND))
     link.receive(MotionReport(arm=ArmPlace.MOVING, stamp=2 * SECOND))
     assert link.newest.arm == ArmPlace.MOVING
+
+
+class SleepyClock(Clock):
+    """Who waits does so until he is woken."""
+
+    def __init__(self) -> None:
+        self.waits = threading.Event()
+
+    def wait(self, changed: threading.Condition, seconds: float) -> None:
+        del seconds
+        self.waits.set()
+        changed.wait(120.0)
+
+
+def test_who_follows_a_plan_looks_at_other_news_as_soon_as_he_is_woken() -> None:
+    linked = Linked()
+    clock = SleepyClock()
+    linked.link = MotionLink(linked.settings, linked, lambda: 0, clock)
+    linked.start()
+    contradicted = threading.Event()
+    ended = []
+    follower = threading.Thread(
+        target=lambda: ended.append(linked.link.follow(lambda _: None, contradicted.is_set)),
+        daemon=True,
+    )
+    follower.start()
+    assert clock.waits.wait(60.0)
+    contradicted.set()
+    linked.link.wake()
+    follower.join(60.0)
+    assert ended == [None]

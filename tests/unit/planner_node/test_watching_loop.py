@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -24,6 +25,7 @@ class WatchBench(LoopBench):
 
     Attributes:
         moved: blocks that are not where their stack says: in the hand, elsewhere, or gone.
+        fallen: blocks that lie somewhere; perception says so of the first.
     """
 
     stacks: Stacks
@@ -31,13 +33,18 @@ class WatchBench(LoopBench):
     def __init__(self, *behaviours: Behaviour, **settings: Any) -> None:
         super().__init__(*(behaviours or (phase_by_phase(),)), **settings)
         self.moved: dict[str, Point | None] = {}
+        self.fallen: dict[str, Point] = {}
 
     def look(self) -> None:
         moves = self._running is not None
-        status = GraphStatus.OCCLUDED if moves else GraphStatus.CONFIDENT
-        self.scenes.receive(
-            frame(self.stacks, self.clock.ros_now(), self.moved, status, visible=0.9)
-        )
+        status, message = GraphStatus.CONFIDENT, ""
+        if self.fallen:
+            status, message = GraphStatus.UNSTABLE, f"the {next(iter(self.fallen))[:-4]} block lies"
+        if moves:
+            status, message = GraphStatus.OCCLUDED, "the arm hides all"
+        now = self.clock.ros_now()
+        seen = frame(self.stacks, now, self.moved, status, visible=0.9, fallen=self.fallen)
+        self.scenes.receive(replace(seen, message=message))
 
     def exchange(self, one: str, other: str) -> None:
         names = {one: other, other: one}
@@ -165,6 +172,23 @@ def test_a_block_that_is_gone_is_refused_by_its_name() -> None:
         "green_box was expected on stack1 and is not seen any more since move 1 of 3"
     )
     assert outcome.causes[0] in outcome.message
+
+
+def test_a_block_that_fell_is_noticed_and_refused_by_what_happened() -> None:
+    def topple(bench: WatchBench) -> None:
+        bench.take_away("green_box")
+        bench.fallen["green_box"] = (0.56, 0.05, 0.02)
+
+    bench = WatchBench(phase_by_phase((0, "pick"), topple), verify="watch")
+    outcome = achieve(bench)
+    assert (outcome.status, outcome.module) == (Status.NOT_CONFIDENT, "perception")
+    assert outcome.message.startswith("the green block lies")
+    assert outcome.causes[0] == (
+        "green_box was expected on stack1 and is seen 78 mm beside where it was to be since move 1 "
+        "of 3"
+    )
+    assert outcome.causes[0] in outcome.message
+    assert outcome.moves_executed <= 1
 
 
 def test_a_block_that_moved_a_little_is_taken_from_where_it_is() -> None:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scene graphs survive the way into a message and back."""
 
+from dataclasses import replace
+
 import pytest
 from std_msgs.msg import Header
 from tamp_runtime.messages.scene_graph import (
@@ -31,6 +33,12 @@ GRAPH = SceneGraph(
 def test_there_and_back_changes_nothing() -> None:
     # All numbers above are exact in float32, so equality is exact.
     assert graph_from_message(graph_to_message(GRAPH, Header())) == GRAPH
+
+
+def test_what_is_hidden_of_places_goes_there_and_back() -> None:
+    places = (Place(0, (0.5, 0.0, 0.0), 0.25, 0.125), Place(1, (0.5, 0.25, 0.0)))
+    back = graph_from_message(graph_to_message(replace(GRAPH, places=places), Header()))
+    assert [(item.hidden, item.seen_to) for item in back.places] == [(0.25, 0.125), (0.0, 0.0)]
 
 
 def test_objects_and_relations_come_sorted() -> None:

@@ -14,14 +14,6 @@ class BadImageError(PerceptionError):
     """An image, segmentation, depth or camera that cannot be used."""
 
 
-class NotUprightError(PerceptionError):
-    """A block none of whose faces is upright; ``index`` is that of its segment."""
-
-    def __init__(self, message: str, index: int) -> None:
-        super().__init__(message)
-        self.index = index
-
-
 class WeightsError(PerceptionError):
     """A weights file that is missing, damaged or not ours; ``path`` is the file."""
 

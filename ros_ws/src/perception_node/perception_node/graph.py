@@ -66,7 +66,8 @@ def _with_hidden_shares(standing: Standing, occlusion: Occlusion) -> tuple[Place
     if len(occlusion.shares) != len(standing.places):
         return standing.places
     return tuple(
-        replace(place, hidden=share) for place, share in zip(standing.places, occlusion.shares)
+        replace(place, hidden=share, seen_to=height)
+        for place, share, height in zip(standing.places, occlusion.shares, occlusion.seen_to)
     )
 
 

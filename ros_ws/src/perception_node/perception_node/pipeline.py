@@ -13,9 +13,10 @@ from scene_graph import GraphStatus, SceneGraph
 from .alignment import aligned
 from .blocks import centres, find_blocks, measure
 from .config import PerceptionConfig
-from .errors import BadImageError, NotUprightError, PerceptionError
+from .errors import BadImageError, PerceptionError
+from .fallen import find_fallen, with_fallen
 from .graph import build_graph
-from .names import color_names, mean_colors, name_blocks
+from .names import name_blocks
 from .observation import Observation
 from .places import Places, Points, RowOfPlaces
 from .places.occlusion import find_occlusion
@@ -28,7 +29,7 @@ from .segment import (
     check_segments,
     given_labels,
 )
-from .verdict import Verdict, judge, judge_empty, judge_not_upright, with_grain
+from .verdict import Verdict, judge, judge_empty, judge_fallen, with_grain
 from .visual_module.coordinates import Locator
 
 
@@ -40,7 +41,8 @@ class Perceived:
         graph: of the scene; without objects where the observation cannot be used.
         status: whether it can be planned on.
         message: a sentence saying why not; empty if it can.
-        segments: which pixels the graph's objects are; None if it did not come that far.
+        segments: which pixels the graph's objects are, those that lie left out; None if it did not
+            come that far.
     """
 
     graph: SceneGraph
@@ -108,20 +110,28 @@ class Perception:
             occlusion = find_occlusion(observation, segments, places, config)
             return refused(judge_empty(occlusion, config))
         coordinates = self.locator.locate(self.locator.images(observation.rgb, segments))
-        try:
-            surfaces = measure(observation, segments)
-        except NotUprightError as error:
+        surfaces = measure(observation, segments)
+        fallen = find_fallen(observation.rgb, segments, surfaces, coordinates)
+        if fallen:
             occlusion = find_occlusion(observation, segments, places, config)
-            parts = [segment.part for segment in segments]
-            color = color_names(mean_colors(observation.rgb, parts))[error.index]
-            sentence = f"the {color} block {error}"
-            return refused(judge_not_upright(sentence, occlusion, config))
+            verdict = judge_fallen(fallen[0], occlusion, config)
+        if len(fallen) == len(segments):
+            return refused(verdict)
+        # What is known of the others is told all the same; what has fallen may hide some of them.
+        upright = [index for index, item in enumerate(surfaces) if item.upright]
+        segments = segments.without([item.index for item in fallen])
+        if fallen:
+            coordinates = coordinates.of(upright)
+            surfaces = tuple(surfaces[index] for index in upright)
         standing = places.stand(observation, segments, coordinates, centres(surfaces))
         blocks = find_blocks(observation, segments, standing, surfaces)
         occlusion = find_occlusion(observation, segments, places, config, blocks.poses)
         names = name_blocks(observation.rgb, segments, blocks.shapes, standing.stacks)
         graph = build_graph(observation, segments, occlusion, coordinates, standing, blocks, names)
-        verdict = judge(graph, occlusion, standing, blocks, names, config)
+        if fallen:
+            graph = with_fallen(graph, fallen)
+        else:
+            verdict = judge(graph, occlusion, standing, blocks, names, config)
         return Perceived(graph, *with_grain(verdict, observation.noise), segments)
 
     def _aligned(self, observation: Observation) -> Observation:

@@ -15,6 +15,7 @@ from scene_graph import GraphStatus, SceneGraph, base_name
 
 from .blocks import Blocks, MeasuredBlock
 from .config import PerceptionConfig, StabilityLimits
+from .fallen import FallenBlock
 from .names import Names
 from .places import Standing
 from .places.occlusion import Occlusion
@@ -88,11 +89,15 @@ def judge_empty(occlusion: Occlusion, config: PerceptionConfig) -> Verdict:
     )
 
 
-def judge_not_upright(sentence: str, occlusion: Occlusion, config: PerceptionConfig) -> Verdict:
+def judge_fallen(block: FallenBlock, occlusion: Occlusion, config: PerceptionConfig) -> Verdict:
     """The verdict on a picture with a block that could not be measured as one that is upright."""
     if hidden := occluded(occlusion, config.max_hidden):
         return Verdict(GraphStatus.OCCLUDED, hidden)
-    return Verdict(GraphStatus.UNSTABLE, sentence)
+    return Verdict(
+        GraphStatus.UNSTABLE,
+        f"the {block.color} block lies on its side or leans: no upright face of it is seen; put "
+        "it upright, or check the depth camera if it is",
+    )
 
 
 def occluded(occlusion: Occlusion, max_hidden: float) -> str:

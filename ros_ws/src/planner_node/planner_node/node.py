@@ -136,6 +136,7 @@ class PlannerNode(Node):
 
     def _on_scene_graph(self, message: SceneGraph) -> None:
         self._scenes.receive(sighting_from_message(message))
+        self._motion.wake()  # a plan that is watched is stopped by what is seen, without delay
 
     def _on_motion_status(self, message: MotionStatus) -> None:
         try:

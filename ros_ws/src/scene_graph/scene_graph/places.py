@@ -24,11 +24,14 @@ class Place:
         position_world: its centre on the table's surface [m].
         hidden: how much of the column over it something hid that is not a block, in the picture
             that its graph was made of, in 0..1; of no matter to whether it is the same place.
+        seen_to: up to which height over it nothing hid the column, likewise [m]; 0 where that is
+            not known.
     """
 
     index: int
     position_world: Point
     hidden: float = field(default=0.0, compare=False)
+    seen_to: float = field(default=0.0, compare=False)
 
 
 def base_name(index: int) -> str:

@@ -44,7 +44,6 @@ def measure(observation: Observation, segments: Segments) -> tuple[BlockSurface,
 
     Raises:
         BadImageError: if too little depth of a block is known.
-        NotUprightError: if a block does not stand upright at all.
     """
     depth, camera = observation.depth, observation.camera
     if depth is None or camera is None:

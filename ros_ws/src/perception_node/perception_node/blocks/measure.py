@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception_node.camera import PinholeCamera
-from perception_node.errors import BadImageError, NotUprightError
+from perception_node.errors import BadImageError
 from perception_node.segment import Segments
 from scene_graph import BOX, CYLINDER
 
@@ -62,6 +62,8 @@ class BlockSurface:
         covariance: of x, y, yaw, the two widths, low and high, shape (7, 7).
         tilt: angle between its front and the vertical [rad].
         rival: a shape that explains it nearly as well; empty: there is none.
+        upright: whether it is a block that stands upright; else nothing but about where it is can
+            be relied on.
     """
 
     shape: str
@@ -73,6 +75,7 @@ class BlockSurface:
     covariance: Array
     tilt: float = 0.0
     rival: str = ""
+    upright: bool = True
 
 
 def measure_blocks(
@@ -94,7 +97,6 @@ def measure_blocks(
 
     Raises:
         BadImageError: if too little depth of a block is known; the sentence names its label.
-        NotUprightError: if enough is known, but it is no block that stands upright.
     """
     above = covering(segments, depth, camera)
     evidence = []
@@ -110,15 +112,10 @@ def measure_blocks(
             ) from error
     surfaces = []
     fits, rivals = _best(evidence, noise)
-    for index, (best, item, rival) in enumerate(zip(fits, evidence, rivals)):
+    for best, item, rival in zip(fits, evidence, rivals):
         far = FLAT + FLAT_NOISE * float(np.median(item.noise))
-        if best.distance > far or best.cost > BAD:
-            raise NotUprightError(
-                "lies on its side or leans: no upright face of it is seen; put it upright, or "
-                "check the depth camera if it is",
-                index,
-            )
-        surfaces.append(replace(_surface(best, item), rival=rival))
+        upright = best.distance <= far and best.cost <= BAD
+        surfaces.append(replace(_surface(best, item), rival=rival, upright=upright))
     return tuple(surfaces)
 
 

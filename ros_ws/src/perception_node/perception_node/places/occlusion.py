@@ -24,6 +24,8 @@ Mask = NDArray[np.bool_]
 
 #: Things lower than this above the table hide nothing: shadows, the table itself [m].
 MIN_HEIGHT: Final = 0.01
+#: So small a share of a column's pixels hides nothing.
+STRAY: Final = 0.002
 #: What is this near to a measured block is of it: pixels that a segmenter missed [m].
 RIM: Final = 0.008
 
@@ -41,6 +43,32 @@ class Columns:
     places: Places
     half_width: float
     height: float
+
+    def seen_to(self, hidden: Mask, regions: Sequence[Mask], camera: PinholeCamera) -> list[float]:
+        """For each column the height over its place up to which nothing hides it [m].
+
+        A hidden pixel hides the column at the height at which its ray leaves it at the back, and
+        above. Some stray pixels hide nothing.
+
+        Args:
+            hidden: the pixels where something hides the places, shape (height, width).
+            regions: those of :meth:`regions`.
+        """
+        heights = []
+        for foot, region in zip(self._feet(), regions):
+            rows, across = np.nonzero(hidden & region)
+            stray = int(STRAY * np.count_nonzero(region))
+            if len(rows) <= stray:
+                heights.append(self.height)
+                continue
+            away = foot[:2] - camera.position_world[:2]
+            distance = float(np.hypot(*away))
+            rays = camera.rays_world(np.stack([across, rows], axis=-1))
+            ahead = np.maximum(rays[:, :2] @ (away / max(distance, 1e-9)), 1e-9)
+            back = (distance + self.half_width) / ahead
+            z = camera.position_world[2] + back * rays[:, 2] - foot[2]
+            heights.append(float(np.clip(np.partition(z, stray)[stray], 0.0, self.height)))
+        return heights
 
     def regions(self, camera: PinholeCamera) -> list[Mask]:
         """For each column the pixels behind which it may be, shape (height, width)."""
@@ -78,10 +106,12 @@ class Occlusion:
         hidden: pixels where such a thing is in front of or among the places, shape (height, width);
             None where that cannot be known.
         shares: the hidden share of the column over each place, 0..1; empty where it is not known.
+        seen_to: up to which height over each place nothing hides the column [m]; likewise.
     """
 
     hidden: Mask | None = None
     shares: tuple[float, ...] = ()
+    seen_to: tuple[float, ...] = ()
 
     @property
     def greatest(self) -> float:
@@ -132,7 +162,8 @@ def find_occlusion(
         if block is not None:
             hides &= ~_is_of(block, points)
     hidden[rows[hides], across[hides]] = True
-    return Occlusion(hidden, tuple(_share(hidden, region) for region in regions))
+    shares = tuple(_share(hidden, region) for region in regions)
+    return Occlusion(hidden, shares, tuple(columns.seen_to(hidden, regions, camera)))
 
 
 def _is_of(block: BlockPose, points_world: Array) -> Mask:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Final, Protocol
 
@@ -71,6 +71,16 @@ class Segments:
 
     def __iter__(self) -> Iterator[Segment]:
         return iter(self.blocks)
+
+    def without(self, left_out: Collection[int]) -> Segments:
+        """The others, where some are none of the blocks; these are given by their indices."""
+        if not left_out:
+            return self
+        labels = self.label_image.copy()
+        for index in left_out:
+            labels[self.blocks[index].mask] = 0
+        kept = tuple(item for index, item in enumerate(self.blocks) if index not in left_out)
+        return Segments(labels, kept, self.source)
 
     def union(self) -> Mask:
         """Pixels of the largest part of any block, shape (height, width)."""

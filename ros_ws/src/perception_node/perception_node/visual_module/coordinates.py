@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -29,6 +30,11 @@ class Coordinates:
     corners: NDArray[np.float64]
     centres: NDArray[np.float64]
     iou: NDArray[np.float64]
+
+    def of(self, objects: Sequence[int]) -> Coordinates:
+        """Those of some of the objects, by their indices."""
+        some = list(objects)
+        return Coordinates(self.phi[some], self.corners[some], self.centres[some], self.iou[some])
 
 
 class Locator(Protocol):

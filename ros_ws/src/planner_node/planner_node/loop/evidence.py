@@ -2,7 +2,8 @@
 """What contradicts a plan: frame by frame, and for certain once enough frames agree.
 
 Frames are taken while the arm is in the view. A block that is seen somewhere else counts, however
-much of the rest is hidden. One that is not seen counts where nothing hides its place.
+much of the rest is hidden. One that is not seen counts where nothing hides where it is to be. What
+is plain in one frame waits for no other: the hand may be about to close.
 """
 
 from __future__ import annotations
@@ -13,9 +14,10 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-from scene_graph import GraphStatus, Place, SceneObject
+from scene_graph import GraphStatus, Place, SceneGraph, SceneObject
 
 from .expectation import RESTING_TOLERANCE, Expectation, Point, Rest
+from .likeness import by_name
 from .scene import Sighting
 
 #: Of a block whose outline is hidden further, nothing is believed.
@@ -34,9 +36,16 @@ class Kind(Enum):
     FOREIGN = "foreign"
 
 
-#: So many frames have to agree; one is enough that perception calls CONFIDENT. A part of the arm
-#: can look like a block, though not for long at one point.
-FRAMES: Final = {Kind.ELSEWHERE: 2, Kind.UNSEEN: 2, Kind.FOREIGN: 3}
+#: A part of the arm can look like a block, though not in so many frames at one point.
+FOREIGN_FRAMES: Final = 3
+#: A block of which as much is seen, and that is this much further from where it was to be than it
+#: may be [m], is plainly elsewhere.
+PLAINLY: Final = 0.6
+BEYOND: Final = 0.005
+#: What is seen this near to where a block was to be [m] may be this block, badly measured.
+NEAR: Final = 0.03
+#: The hand lifts what it takes; what is seen no higher than this over its rest [m] it has not.
+LIFTED: Final = 0.01
 
 
 @dataclass(frozen=True)
@@ -46,12 +55,14 @@ class Finding:
     Attributes:
         expected: where it was to rest; None for a foreign one.
         position_world: where it is seen [m]; None if it is not.
+        frames: so many have to agree, of which one is enough that perception calls CONFIDENT.
     """
 
     name: str
     kind: Kind
     expected: Rest | None = None
     position_world: Point | None = None
+    frames: int = 2
 
     def agrees_with(self, other: Finding) -> bool:
         """Whether both say the same; a block that is still on its way is not seen twice alike."""
@@ -104,8 +115,8 @@ class Evidence:
         if not graph.objects:
             return ()
         self._fresh.clear()
-        seen = {item.name: item for item in graph.objects}
         states = [self.expectation.at(step) for step in steps]
+        seen = by_name(graph.objects, states)
         # It may be in the hand before that is heard of.
         about_to_rise = self.expectation.picked(steps[-1])
         for name in states[0]:
@@ -114,39 +125,59 @@ class Evidence:
                 self._suspicions.pop(name, None)
                 continue
             options = tuple(rest for rest in rests if rest is not None)
-            self._weigh_block(name, seen.get(name), options, graph.places, about_to_rise, steps)
-        for item in graph.objects:
-            if item.name not in states[0] and _over_a_place(item, graph.places):
-                finding = Finding(item.name, Kind.FOREIGN, None, item.position_world)
+            self._weigh_block(name, seen.get(name), options, graph, about_to_rise, steps)
+        for name, item in seen.items():
+            if name not in states[0] and all(item.size) and _over_a_place(item, graph.places):
+                frames = FOREIGN_FRAMES
+                if item.confidence >= PLAINLY and _is_on_something(item, graph):
+                    # It may be one of the others by another name, unless these are all seen.
+                    frames = 1 if states[0].keys() <= seen.keys() else 2
+                finding = Finding(name, Kind.FOREIGN, None, item.position_world, frames)
                 self._suspect(finding, steps)
         for name in [name for name in self._suspicions if name not in states[0]]:
             if name not in seen:
                 del self._suspicions[name]
-        return self._certain(sighting.status, about_to_rise)
+        return self._certain(sighting.status)
 
     def _weigh_block(
         self,
         name: str,
         item: SceneObject | None,
         options: tuple[Rest, ...],
-        places: tuple[Place, ...],
+        graph: SceneGraph,
         about_to_rise: str,
         steps: range,
     ) -> None:
-        if item is None:
-            if all(_is_seen(rest.stack, places) for rest in options):
-                self._suspect(Finding(name, Kind.UNSEEN, options[-1]), steps)
+        lies = item is not None and not all(item.size)
+        if item is not None and lies and any(_is_at(item, rest) for rest in options):
+            return  # it stands, and is measured badly
+        if item is None or lies:
+            # What lies may be a part of the arm that looks like it: where it was to be tells.
+            if all(_is_seen(rest, graph.places) for rest in options):
+                # Something else in its place may be it, by another name. Where the hand is, it may
+                # have been taken, and the report of that be on its way.
+                doubt = any(_is_at(other, rest) for other in graph.objects for rest in options)
+                held = name == about_to_rise and not _is_clear(options[-1], graph.places)
+                kind, where = Kind.UNSEEN, None
+                if item is not None:
+                    kind, where = Kind.ELSEWHERE, item.position_world
+                self._suspect(Finding(name, kind, options[-1], where, 1 + doubt + held), steps)
             return
-        if item.confidence < MIN_VISIBLE or not all(item.size):
+        if item.confidence < MIN_VISIBLE:
             return
         for rest in options:
             if rest.holds(item.position_world):
                 self.expectation.learn(item, rest)
                 self._suspicions.pop(name, None)
                 return
-        if name == about_to_rise and _is_lifted(item, options[-1]):
+        held = name == about_to_rise
+        if held and _is_lifted(item, options[-1]):
             return
-        self._suspect(Finding(name, Kind.ELSEWHERE, options[-1], item.position_world), steps)
+        held &= item.position_world[2] > options[-1].position_world[2] + LIFTED
+        off = min(math.dist(item.position_world, r.position_world) - r.tolerance for r in options)
+        doubt = item.confidence < PLAINLY or off <= BEYOND
+        finding = Finding(name, Kind.ELSEWHERE, options[-1], item.position_world, 1 + doubt + held)
+        self._suspect(finding, steps)
 
     def _suspect(self, finding: Finding, steps: range) -> None:
         self._fresh.add(finding.name)
@@ -156,12 +187,13 @@ class Evidence:
         else:
             self._suspicions[finding.name] = Suspicion(finding, before.frames + 1, before.step)
 
-    def _certain(self, status: GraphStatus, about_to_rise: str) -> tuple[Suspicion, ...]:
+    def _certain(self, status: GraphStatus) -> tuple[Suspicion, ...]:
         certain = [
             item
             for name, item in self._suspicions.items()
             if name in self._fresh
-            and item.frames >= self._needed(item.finding, status, about_to_rise)
+            and item.frames
+            >= self._patience * (1 if status is GraphStatus.CONFIDENT else item.finding.frames)
         ]
         if not certain:
             return ()
@@ -169,22 +201,42 @@ class Evidence:
                   if item.frames > 1 and item not in certain]  # fmt: skip
         return (*certain, *others)
 
-    def _needed(self, finding: Finding, status: GraphStatus, about_to_rise: str) -> int:
-        if status is GraphStatus.CONFIDENT:
-            return self._patience
-        # A block that is seen may be in the hand already, and that report still be on its way.
-        may_be_held = finding.kind is Kind.ELSEWHERE and finding.name == about_to_rise
-        return self._patience * (FRAMES[finding.kind] + may_be_held)
+
+def _is_at(item: SceneObject, rest: Rest) -> bool:
+    """Whether what is seen there may be a block that rests there, measured badly."""
+    return math.dist(item.position_world, rest.position_world) <= NEAR
 
 
-def _is_seen(stack: int, places: Iterable[Place]) -> bool:
-    return any(place.index == stack and place.hidden <= MAX_HIDDEN for place in places)
+def _is_on_something(item: SceneObject, graph: SceneGraph) -> bool:
+    """Whether a block is seen to stand on a place or a block, and not in the air."""
+    low = item.position_world[2] - 0.5 * item.size[2]
+    tops = [place.position_world[2] for place in graph.places]
+    tops += [
+        other.position_world[2] + 0.5 * other.size[2]
+        for other in graph.objects
+        if math.dist(other.position_world[:2], item.position_world[:2]) <= OVER
+    ]
+    return any(abs(low - top) <= LIFTED for top in tops)
+
+
+def _is_seen(rest: Rest, places: Iterable[Place]) -> bool:
+    """Whether nothing hides a block that rests there."""
+    top = rest.position_world[2] + 0.5 * rest.height
+    return _is_clear(rest, places) or any(
+        place.index == rest.stack and top <= place.position_world[2] + place.seen_to
+        for place in places
+    )
+
+
+def _is_clear(rest: Rest, places: Iterable[Place]) -> bool:
+    """Whether nothing is over the place of a block: not the hand either."""
+    return any(place.index == rest.stack and place.hidden <= MAX_HIDDEN for place in places)
 
 
 def _is_lifted(item: SceneObject, rest: Rest) -> bool:
     """Whether a block is right above where it rested."""
     dx, dy, dz = (a - b for a, b in zip(item.position_world, rest.position_world))
-    return math.hypot(dx, dy) <= OVER and dz > 0.0
+    return math.hypot(dx, dy) <= OVER and dz > LIFTED
 
 
 def _over_a_place(item: SceneObject, places: Iterable[Place]) -> bool:

@@ -30,6 +30,7 @@ class Rest:
         support: what it is to stand on: a block, or the base of its place.
         position_world: of its centre [m].
         tolerance: horizontal, of its centre [m].
+        height: of the block [m].
         moves: how many moves of the plan have placed it; tells its rests apart.
     """
 
@@ -37,6 +38,7 @@ class Rest:
     support: str
     position_world: Point
     tolerance: float
+    height: float
     moves: int
 
     def holds(self, position_world: Point) -> bool:
@@ -87,8 +89,9 @@ class Expectation:
 
     def _rest(self, name: str, done: int, stack: int, support: str, beneath: Point) -> Rest:
         moves = self._plan.blocks[:done].count(name)
+        height = self._objects[name].size[2]
         if (seen := self._seen.get((name, moves))) is not None:
-            return Rest(stack, support, seen, RESTING_TOLERANCE, moves)
+            return Rest(stack, support, seen, RESTING_TOLERANCE, height, moves)
         x, y, top = beneath
-        centre = (x, y, top + 0.5 * self._objects[name].size[2])
-        return Rest(stack, support, centre, PLACED_TOLERANCE, moves)
+        centre = (x, y, top + 0.5 * height)
+        return Rest(stack, support, centre, PLACED_TOLERANCE, height, moves)

@@ -214,6 +214,11 @@ class MotionLink:
         with self._changed:
             self._execution = None
 
+    def wake(self) -> None:
+        """Has those who wait here look again at once what they wait for: there is other news."""
+        with self._changed:
+            self._changed.notify_all()
+
     def wait(self, until: Callable[[], bool], seconds: float, stopped: Callable[[], bool]) -> bool:
         """Waits for something that the motion node reports; False: ``stopped``, or in vain."""
         deadline = self._clock.now() + seconds

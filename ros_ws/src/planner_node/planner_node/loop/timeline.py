@@ -7,9 +7,11 @@ from typing import Final
 
 from tamp_runtime.motion_report import MotionReport, MotionState
 
-#: A step may have begun this much before the report that says so was stamped, and what it put down
-#: has come to rest this much after its end: the times are those of different nodes [ns].
-DOUBT: Final = 500_000_000
+#: A step may have begun this much before the report that says so was stamped: that comes late, and
+#: the times are those of different nodes [ns].
+LATE: Final = 500_000_000
+#: What it put down has come to rest this much after the report that it ended [ns].
+SETTLED: Final = 200_000_000
 
 
 class Timeline:
@@ -49,8 +51,8 @@ class Timeline:
         """The steps that may have been under way at a time [ns]; those between were, too."""
         first, last = self._begun[0][0], self._begun[0][0]
         for step, begun in self._begun[1:]:
-            if begun + DOUBT < stamp:
+            if begun + SETTLED < stamp:
                 first = step
-            if begun - DOUBT <= stamp:
+            if begun - LATE <= stamp:
                 last = step
         return range(first, last + 1)

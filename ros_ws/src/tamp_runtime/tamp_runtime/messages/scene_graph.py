@@ -76,6 +76,7 @@ def graph_to_message(graph: SceneGraph, header: Header) -> SceneGraphMsg:
                 index=place.index,
                 position=Point(**dict(zip("xyz", map(float, place.position_world)))),
                 hidden=float(place.hidden),
+                seen_to=float(place.seen_to),
             )
             for place in graph.places
         ],
@@ -89,7 +90,12 @@ def graph_from_message(message: SceneGraphMsg) -> SceneGraph:
         objects=tuple(object_from_message(item) for item in message.objects),
         relations=relations_from_messages(message.relations),
         places=tuple(
-            Place(item.index, (item.position.x, item.position.y, item.position.z), item.hidden)
+            Place(
+                item.index,
+                (item.position.x, item.position.y, item.position.z),
+                item.hidden,
+                item.seen_to,
+            )
             for item in message.bases
         ),
         confidence=message.confidence,
