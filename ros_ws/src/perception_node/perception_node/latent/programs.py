@@ -37,8 +37,6 @@ _EDGE: Final = 32
 _SEEN: Final = 48
 #: Width of what relations are told by.
 _BESIDE: Final = 32
-#: Places are told from -8 to 8, so that what is a little further left differs enough to be learnt.
-_SPAN: Final = 8.0
 _TINY: Final = 1e-6
 
 
@@ -90,7 +88,7 @@ class PlaceSight(nn.Module):
             )
             for reach in (1, 2, 4)
         )
-        line = torch.linspace(-_SPAN, _SPAN, _EDGE)
+        line = torch.linspace(-1.0, 1.0, _EDGE)
         where = torch.stack(torch.meshgrid(line, line, indexing="ij"))
         self.register_buffer("where", where.flatten(1).T[None].contiguous())
 
