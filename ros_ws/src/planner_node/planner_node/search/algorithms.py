@@ -12,7 +12,7 @@ from .bounded import bounded
 from .breadth_first import breadth_first
 from .limits import Limits
 from .patterns_both_ends import patterns_both_ends
-from .both_ends_first import both_ends_first
+from .patterns_first import patterns_first
 from .peers.engine import PREFIX, Engine
 from .state import Problem, State
 
@@ -25,7 +25,7 @@ AUTO: Final = "auto"
 
 
 ALGORITHMS: Final[dict[str, SearchAlgorithm]] = {
-    AUTO: both_ends_first,
+    AUTO: patterns_first,
     "breadth_first": breadth_first,
     "both_ends": both_ends,
     "a_star": a_star,
