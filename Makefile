@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual record eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual record eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference peers
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -100,6 +100,9 @@ results: setup  ## docs/results.md from the result files
 
 reference: setup  ## docs/parameters.md and docs/interfaces.md from the sources
 	@$(RUN) python tools/write_reference.py
+
+peers: setup  ## Unified Planning, Fast Downward and pyperplan as back ends: search_algorithm up:ENGINE
+	@VIRTUAL_ENV=$(VENV) $(VENV)/bin/uv pip install --require-hashes --no-deps -r requirements-peers.lock
 
 lock:  ## compile requirements.in to the hash-pinned requirements.lock
 	@tools/lock

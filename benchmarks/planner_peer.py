@@ -1,26 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fast Downward as a peer: a problem of stacks in PDDL, and the length of its shortest plan."""
+"""Fast Downward as a peer: the length of its shortest plan, and how long it takes."""
 
 from __future__ import annotations
 
 import subprocess
 import tempfile
 import time
-from itertools import pairwise
 from pathlib import Path
 
-from planner_node import Goal
-from scene_graph import UP, Stacks, base_name
-
-DOMAIN = """(define (domain stacks)
- (:requirements :strips :typing :negative-preconditions :equality)
- (:types block base - thing)
- (:predicates (on ?b - block ?t - thing) (clear ?t - thing))
- (:action move
-  :parameters (?b - block ?from ?to - thing)
-  :precondition (and (on ?b ?from) (clear ?b) (clear ?to) (not (= ?b ?to)) (not (= ?from ?to)))
-  :effect (and (on ?b ?to) (clear ?from) (not (on ?b ?from)) (not (clear ?to)))))
-"""
+from planner_node import Goal, pddl_of
+from scene_graph import Stacks
 
 
 class FastDownward:
@@ -45,8 +34,9 @@ class FastDownward:
         """
         with tempfile.TemporaryDirectory() as folder:
             domain, problem, plan = (Path(folder) / name for name in ("d.pddl", "p.pddl", "plan"))
-            domain.write_text(DOMAIN)
-            problem.write_text(_problem(initial, goal))
+            told = pddl_of(initial, goal)
+            domain.write_text(told.domain)
+            problem.write_text(told.problem)
             start = time.perf_counter()
             within = [] if limit is None else ["--overall-time-limit", f"{limit:.0f}s"]
             done = subprocess.run(
@@ -62,20 +52,4 @@ class FastDownward:
                     f"Fast Downward found no plan: {done.stdout[-500:]}{done.stderr}"
                 )
             lines = plan.read_text().splitlines()
-            return sum(line.startswith("(") for line in lines), seconds
-
-
-def _problem(initial: Stacks, goal: Goal) -> str:
-    blocks = [name for stack in initial for name in stack]
-    bases = [base_name(place) for place in range(len(initial))]
-    facts = []
-    for base, stack in zip(bases, initial):
-        column = [base, *stack]
-        facts += [f"(on {upper} {lower})" for lower, upper in pairwise(column)]
-        facts.append(f"(clear {column[-1]})")
-    assert all(item.predicate == UP for item in goal.relations)
-    wanted = " ".join(f"(on {item.subject} {item.object})" for item in goal.relations)
-    return (
-        f"(define (problem p) (:domain stacks) (:objects {' '.join(blocks)} - block "
-        f"{' '.join(bases)} - base) (:init {' '.join(facts)}) (:goal (and {wanted})))"
-    )
+            return sum(line.startswith("(move ") for line in lines), seconds

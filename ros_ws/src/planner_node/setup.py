@@ -21,6 +21,7 @@ setup(
             "plan_to_goal = planner_node.executable:plan_to_goal",
             "achieve_goal = planner_node.executable:achieve_goal",
             "stop = planner_node.executable:stop",
+            "write_pddl = planner_node.executable:write_pddl",
         ]
     },
 )

@@ -22,6 +22,7 @@ EXPECTED = {
     "own_predicate": "2 moves to 'red_box level with yellow_box, green_box above blue_box'",
     "own_segmenter": "CONFIDENT",
     "perceive_a_picture": "drawn into",
+    "plan_of_another_planner": "INVALID_PLAN: step 2 of the plan, '(move red_box stack0 blue_box)'",
     "plan_from_a_scene": "4 moves to 'red_box on blue_box, green_box left of red_box'",
 }
 

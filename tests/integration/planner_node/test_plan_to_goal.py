@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
 from planner_neighbours import run_until_stopped, scene_message
+from rclpy.node import Node
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
@@ -16,6 +18,7 @@ from tamp_interfaces.msg import MotionStatus, Relation, SceneGraph
 from tamp_interfaces.srv import PlanToGoal
 from tamp_runtime.messages.images import image_from_array
 
+from planner_node.cli.write_pddl import write_pddl
 from planner_node.node import PlannerNode
 
 Status = PlanToGoal.Response
@@ -93,6 +96,30 @@ def test_a_bad_goal_is_refused_with_a_sentence(
     answer = bench.client.plan(goal, execute=True)
     assert answer.status == status
     assert sentence in answer.message
+    assert bench.motion.plans == []
+
+
+def test_another_planners_plan_is_checked_and_carried_out(bench: Any) -> None:
+    there = "(move blue_box red_box stack2)\n(move red_box stack0 green_box)"
+    answer = bench.client.plan("red on green", plan=there, execute=True)
+    assert (answer.status, len(answer.plan.moves), answer.expanded) == (Status.SUCCESS, 2, 0)
+    bench.ros.wait_until(lambda: bench.motion.plans)
+    assert [(item.source, item.target) for item in bench.motion.plans[0].moves] == [(0, 2), (0, 1)]
+
+
+def test_another_planners_plan_needs_no_goal(bench: Any) -> None:
+    answer = bench.client.plan(plan="0 2")
+    assert answer.status == Status.SUCCESS
+    wanted = [(item.subject, item.object) for item in answer.plan.goal]
+    assert ("blue_box", "stack2") in wanted
+
+
+def test_another_planners_plan_is_refused_with_its_step(bench: Any) -> None:
+    answer = bench.client.plan("red on green", plan="(0, 2)\n(0, 2)", execute=True)
+    assert answer.status == Status.INVALID_PLAN
+    assert "after the last move 'red_box on green_box' is not true" in answer.message
+    answer = bench.client.plan("red on green", plan="(1, 2)\n(1, 0)", execute=True)
+    assert "step 2 of the plan, '(1, 0)': stack1 is empty" in answer.message
     assert bench.motion.plans == []
 
 
@@ -231,3 +258,17 @@ def test_parameters_out_of_range_are_refused(
     assert name in result.reason
     with pytest.raises(ValueError, match=name):
         PlannerNode(context=ros_context.context, parameter_overrides=[Parameter(name, value=value)])
+
+
+def test_what_the_camera_sees_is_written_for_other_planners(
+    bench: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Any
+) -> None:
+    """The command's own context is that of the bench, whose nodes it then hears."""
+    monkeypatch.setattr("planner_node.cli.write_pddl.prepare", lambda _arguments: None)
+    monkeypatch.setattr("planner_node.cli.write_pddl.rclpy.try_shutdown", lambda: None)
+    monkeypatch.setattr(
+        "planner_node.cli.write_pddl.Node", partial(Node, context=bench.ros.context)
+    )
+    arguments = ["write_pddl", "red on green", "--out", str(tmp_path), "--timeout", "60"]
+    assert write_pddl(arguments) == 0
+    assert "(on blue_box red_box)" in (tmp_path / "problem.pddl").read_text()

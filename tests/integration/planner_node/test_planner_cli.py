@@ -21,6 +21,7 @@ from planner_node.cli import commands
 from planner_node.cli.arm_text import describe_arm
 from planner_node.cli.goal_image import ImageFileError, read_goal_image
 from planner_node.cli.plan_text import describe_scene
+from planner_node.cli.write_pddl import write_pddl
 
 Result = AchieveGoal.Result
 Feedback = AchieveGoal.Feedback
@@ -119,6 +120,31 @@ def test_a_plan_is_asked_for_as_it_was_typed(
         "(0, 1) red_box  [- | red_box]",
         "7 states expanded in 0.250 s",
     ]
+
+
+@pytest.mark.parametrize("command", [commands.plan_to_goal, commands.achieve_goal])
+def test_another_planners_plan_is_read_from_its_file(
+    planner: FakePlanner, command: Callable[[list[str]], int], tmp_path: Path
+) -> None:
+    (tmp_path / "plan").write_text("(0, 1)\n")
+    assert command(["command", "--plan", str(tmp_path / "plan")]) == 0
+    assert (planner.asked["goal"], planner.asked["plan"]) == ("", "(0, 1)\n")
+
+
+def test_problems_are_written_for_other_planners(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    state = ("--state", "[red_box green_box | - | blue_box]", "--out", str(tmp_path / "pddl"))
+    assert write_pddl(["write_pddl", "red on blue", *state]) == 0
+    assert "'red_box on blue_box'" in capsys.readouterr().out
+    problem = (tmp_path / "pddl" / "problem.pddl").read_text()
+    assert "(on green_box red_box)" in problem
+    assert "(:goal (and (on red_box blue_box)))" in problem
+    assert "(:action move" in (tmp_path / "pddl" / "domain.pddl").read_text()
+    assert write_pddl(["write_pddl", "red on pink", *state]) == 1
+    assert "pink" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        write_pddl(["write_pddl", "red on blue", "--state", "red_box | red_box"])
 
 
 def test_a_refused_goal_is_explained(
@@ -257,6 +283,7 @@ def test_labels_in_colour_are_no_labels(tmp_path: Path) -> None:
         (("--goal-image", "x.png", "--goal-segmentation", "y.png"), "cannot read"),
         ((), "give a goal"),
         (("red on blue", "--timeout", "soon"), "--timeout"),
+        (("--plan", "x.plan"), "cannot read it"),
     ],
 )
 def test_bad_arguments_are_refused(

@@ -125,8 +125,8 @@ class LoopBench:
         self._running: tuple[str, Iterator[MotionReport]] | None = None
         self._next_beat = 0.0
 
-    def achieve(self, goal: str = GOAL) -> Outcome:
-        return self.loop().run(lambda: self.read(goal))
+    def achieve(self, goal: str = GOAL, given: str = "") -> Outcome:
+        return self.loop().run(lambda: self.read(goal), given)
 
     def loop(self) -> ClosedLoop:
         return ClosedLoop(

@@ -20,10 +20,11 @@ from loop_bench import (
 )
 from tamp_runtime.motion_report import MotionReport, MotionState
 
+from planner_node import make_plan, parse_goal, resolve_goal
 from planner_node.loop import Outcome, Plan, Progress, Stage, Status
 from planner_node.search import ALGORITHMS, Limits, Problem, State
 from planner_node.search.a_star import a_star
-from scene_graph import GraphStatus, SceneGraph, Stacks, up_relations
+from scene_graph import GraphStatus, Move, SceneGraph, Stacks, up_relations
 
 
 def ended(outcome: Outcome) -> tuple[Status, str]:
@@ -129,6 +130,25 @@ def test_the_search_algorithm_is_the_one_that_was_set(monkeypatch: pytest.Monkey
     monkeypatch.setitem(ALGORITHMS, "a_star", spy)
     assert LoopBench(search_algorithm="a_star").achieve().status == Status.SUCCESS
     assert [problem.initial for problem in asked] == [START]
+
+
+def test_another_planners_plan_is_carried_out_in_place_of_the_first_search() -> None:
+    bench = LoopBench()
+    goal = resolve_goal(parse_goal(GOAL), ["red_box", "blue_box", "green_box"])
+    longer = make_plan(bench.stacks, goal).moves
+    first = longer[0]
+    moves = [first, Move(first.target, first.source), *longer]
+    outcome = bench.achieve(given="\n".join(map(str, moves)))
+    assert (outcome.status, outcome.moves_planned) == (Status.SUCCESS, len(moves))
+    assert [plan.moves for plan in bench.plans] == [tuple(moves)]
+
+
+def test_another_planners_plan_that_misses_the_goal_moves_nothing() -> None:
+    bench = LoopBench()
+    outcome = bench.achieve(given="(0, 1)\n(9, 1)")
+    assert ended(outcome) == (Status.INVALID_PLAN, "planner")
+    assert "step 2 of the plan, '(9, 1)': there is no stack9" in outcome.message
+    assert bench.plans == []
 
 
 def test_what_two_stacks_cannot_reach_is_told() -> None:

@@ -11,7 +11,7 @@ from planner_states import NAMES, distance, random_state, relation_holds
 
 from planner_node.errors import SearchCancelledError, SearchLimitError
 from planner_node.goals import Goal, complete_goal
-from planner_node.search import make_plan, search
+from planner_node.search import Problem, bounded, make_plan, search
 from planner_node.search.construct import constructed
 from planner_node.search.limits import Limits
 from planner_node.search.reinsertion import Reinsertion, shortened, steps_of
@@ -45,6 +45,19 @@ def test_the_bound_is_true(seed: int) -> None:
     assert shortest.bound == 1.0
     assert len(found.moves) <= found.bound * len(shortest.moves) + 1e-9
     assert len(found.moves) >= len(shortest.moves)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_bound_of_parts_that_share_blocks_is_true(
+    monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    monkeypatch.setattr(bounded, "CIRCLE", 3)
+    initial, target = problem(11, 3, seed)
+    shortest = len(make_plan(initial, complete_goal(target)).moves)
+    limits = Limits(initial, complete_goal(target))
+    bounded.bounded(Problem(initial, complete_goal(target)), limits)
+    assert limits.at_least is not None
+    assert limits.at_least <= shortest
 
 
 def test_few_blocks_get_a_shortest_plan() -> None:

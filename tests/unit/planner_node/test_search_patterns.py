@@ -21,8 +21,9 @@ from planner_states import (
 
 from planner_node.errors import UnreachableError
 from planner_node.goals import Goal, complete_goal
-from planner_node.search import make_plan, search
+from planner_node.search import Limits, Problem, make_plan, patterns_first, search
 from planner_node.search.patterns import pattern_count, pattern_space
+from planner_node.search.patterns_first import patterns_a_star
 from scene_graph import (
     Move,
     Relation,
@@ -173,3 +174,31 @@ def test_patterns_are_all_arrangements(places: int, named: int, like: int) -> No
     }
     if named:
         assert shown == every
+
+
+@pytest.mark.parametrize("places", [3, 4, 5])
+@pytest.mark.parametrize("seed", range(8))
+def test_state_by_state_and_plainly_from_both_ends_plans_are_as_short(
+    places: int, seed: int
+) -> None:
+    rng = random.Random(seed)
+    names = tuple(f"block{index}" for index in range(7))
+    initial, target = random_state(names, places, rng), random_state(names, places, rng)
+    goal = complete_goal(target)
+    limits = Limits(initial, goal)
+    path = patterns_a_star(Problem(initial, goal), limits)
+    assert len(path) - 1 == len(make_plan(initial, goal, algorithm="both_ends").moves)
+    assert limits.expanded > 0
+
+
+def test_where_it_takes_long_state_by_state_the_rest_is_done_in_layers(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(patterns_first, "MOST_EXPANSIONS", 3)
+    rng = random.Random(1)
+    names = tuple(f"block{index}" for index in range(7))
+    initial, target = random_state(names, 3, rng), random_state(names, 3, rng)
+    found = make_plan(initial, complete_goal(target))
+    assert found.expanded > 3
+    shortest = make_plan(initial, complete_goal(target), algorithm="both_ends")
+    assert len(found.moves) == len(shortest.moves)

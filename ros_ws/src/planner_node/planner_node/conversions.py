@@ -23,8 +23,9 @@ from tamp_runtime.messages.stamps import nanoseconds, stamp_from_nanoseconds
 from scene_graph import GraphStatus, SceneGraph, Stacks
 
 from .errors import GoalImageError, InvalidGoalError, NotConfidentError
-from .goals import Goal, goal_of_picture, parse_goal, resolve_goal
+from .goals import Goal, complete_goal, goal_of_picture, parse_goal, resolve_goal
 from .loop import Outcome, Plan, Progress, Scene, Sighting, scene_in
+from .search.peers.read_plan import state_after
 
 #: Asks perception for the scene graph of an image and its segmentation.
 Interpret = Callable[[Image, Image], SceneGraphMsg]
@@ -122,14 +123,18 @@ def read_goal(request: Any, interpret: Interpret) -> Callable[[Stacks], Goal]:
     """Everything about a goal that needs no scene; the result finds its objects in a scene.
 
     Args:
-        request: a request of PlanToGoal or a goal of AchieveGoal.
+        request: a request of PlanToGoal or a goal of AchieveGoal; with a plan alone the goal is
+            what that leads to.
 
     Raises:
         InvalidGoalError: the text makes no sense, or there are text and image.
         GoalImageError: the image makes no sense. The result raises it if the image shows other
             objects than the scene, or UnknownObjectError or AmbiguousObjectError for a text.
+        GivenPlanError: of the result, where a plan without a goal is not possible.
     """
     has_image = request.goal_image.width > 0 or request.goal_segmentation.width > 0
+    if not has_image and request.plan.strip() and not request.goal.strip():
+        return lambda seen: complete_goal(state_after(request.plan, seen))
     if not has_image:
         parsed = parse_goal(request.goal)
         return lambda seen: resolve_goal(

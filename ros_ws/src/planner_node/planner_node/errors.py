@@ -130,6 +130,22 @@ class SearchCancelledError(SearchError):
     module = ""
 
 
+class GivenPlanError(PlannerError):
+    """Another planner's plan is refused; ``step`` is the move that fails, from 0, or all moves."""
+
+    status = "INVALID_PLAN"
+
+    def __init__(self, problem: str, step: int) -> None:
+        super().__init__(problem)
+        self.step = step
+
+
+class EngineError(SearchError):
+    """Another planner's engine is not installed, failed, or gave a plan that is none."""
+
+    status = "ENGINE_FAILED"
+
+
 class NoSceneGraphError(PlannerError):
     """No scene graph has arrived."""
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executables ``planner_node``, ``plan_to_goal``, ``achieve_goal``, ``stop``."""
+"""The executables: ``planner_node``, and the clients that people type."""
 
 from __future__ import annotations
 
@@ -24,3 +24,8 @@ def achieve_goal() -> int:
 def stop() -> int:
     """Entry point of ``ros2 run planner_node stop``."""
     return run_module("planner_node.cli.stop", "stop", stopped=130)
+
+
+def write_pddl() -> int:
+    """Entry point of ``ros2 run planner_node write_pddl``."""
+    return run_module("planner_node.cli.write_pddl", "write_pddl", stopped=130)

@@ -34,7 +34,14 @@ from .conversions import (
     read_goal,
     sighting_from_message,
 )
-from .errors import BusyError, ConflictError, NotConfidentError, PlannerError, SearchError
+from .errors import (
+    BusyError,
+    ConflictError,
+    InvalidGoalError,
+    NotConfidentError,
+    PlannerError,
+    SearchError,
+)
 from .goals import Goal
 from .image_client import ImageClient
 from .loop import (
@@ -44,6 +51,7 @@ from .loop import (
     Progress,
     SceneWatch,
     Status,
+    given_plan_in,
     plan_for,
     plan_in,
 )
@@ -177,7 +185,10 @@ class PlannerNode(Node):
             goal, found = self._latent.plan(request, scene.stacks, scene.stamp)
         else:
             goal = resolve(scene.stacks)
-            found = plan_in(scene, goal, self._settings, self._is_shut_down)
+            if given := request.plan.strip():
+                found = given_plan_in(scene, given, goal, self._settings)
+            else:
+                found = plan_in(scene, goal, self._settings, self._is_shut_down)
         plan = plan_for(scene, goal, found, self._scenes.now())
         response.expanded, response.planning_seconds = found.expanded, found.seconds
         response.plan, response.states = plan_to_message(plan), predicted_to_messages(plan)
@@ -216,7 +227,7 @@ class PlannerNode(Node):
         try:
             # A plan that is not this planner's own is stopped by the loop.
             with self._claimed(claim, motion.check_own):
-                outcome = loop.run(read)
+                outcome = loop.run(read, request.plan)
         except BusyError as error:
             outcome = Outcome(Status[error.status], str(error), error.module, motion=motion.newest)
         except Exception as error:
@@ -228,6 +239,8 @@ class PlannerNode(Node):
     def _read_goal(self, request: Any, cancelled: Callable[[], bool]) -> Callable[[Stacks], Goal]:
         """Of pictures as codes the goal is the state that their plan leads to."""
         latent = self._latent
+        if latent is not None and request.plan.strip():
+            raise InvalidGoalError("representation latent takes no plan; give a goal image", 0)
         if latent is not None:
             return lambda seen: latent.plan(request, seen)[0]
         return read_goal(request, functools.partial(self._images.interpret, cancelled=cancelled))

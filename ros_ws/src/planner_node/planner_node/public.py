@@ -15,6 +15,8 @@ from .errors import (
     CancelledError,
     ConflictError,
     ContradictoryGoalError,
+    EngineError,
+    GivenPlanError,
     GoalImageError,
     InvalidGoalError,
     MotionBusyError,
@@ -58,6 +60,8 @@ from .search import (
     make_plan,
     successors,
 )
+from .search.peers.given_plan import checked_plan
+from .search.peers.pddl import PddlProblem, pddl_of
 from .search.stability import Figure, Stability, Unstable, stability_of
 from .search.stable import make_stable_plan
 from .settings import Settings
@@ -72,7 +76,9 @@ __all__ = [
     "ClosedLoop",
     "ConflictError",
     "ContradictoryGoalError",
+    "EngineError",
     "Figure",
+    "GivenPlanError",
     "Goal",
     "GoalImageError",
     "GraphModel",
@@ -87,6 +93,7 @@ __all__ = [
     "ObjectLostError",
     "ObservedModel",
     "Outcome",
+    "PddlProblem",
     "Plan",
     "PlanTopic",
     "PlannerError",
@@ -113,10 +120,12 @@ __all__ = [
     "UnstableError",
     "apply_to_graph",
     "check_contradictions",
+    "checked_plan",
     "complete_goal",
     "make_plan",
     "make_stable_plan",
     "parse_goal",
+    "pddl_of",
     "plan_for",
     "resolve_goal",
     "scene_in",

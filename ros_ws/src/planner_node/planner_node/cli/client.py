@@ -78,9 +78,10 @@ class PlannerClient:
         goal_image: Image | None = None,
         goal_segmentation: Image | None = None,
         execute: bool = False,
+        plan: str = "",
         timeout: float = 10.0,
     ) -> PlanToGoal.Response:
-        """The answer of plan_to_goal; ``goal`` or the images are given.
+        """The answer of plan_to_goal; ``goal`` or the images are given, or another's ``plan``.
 
         Raises:
             PlannerUnavailableError: no answer within ``timeout`` [s].
@@ -90,6 +91,7 @@ class PlannerClient:
             goal_image=goal_image or Image(),
             goal_segmentation=goal_segmentation or Image(),
             execute=execute,
+            plan=plan,
         )
         return self._call(self._plan_client, request, timeout)
 
@@ -99,6 +101,7 @@ class PlannerClient:
         *,
         goal_image: Image | None = None,
         goal_segmentation: Image | None = None,
+        plan: str = "",
         timeout: float = 10.0,
     ) -> None:
         """Begins to achieve a goal, given as for :meth:`plan`; returns once the planner has it.
@@ -113,6 +116,7 @@ class PlannerClient:
             goal=goal,
             goal_image=goal_image or Image(),
             goal_segmentation=goal_segmentation or Image(),
+            plan=plan,
         )
         client, identity = self._goal_client, UUID(uuid=list(uuid.uuid4().bytes))
 

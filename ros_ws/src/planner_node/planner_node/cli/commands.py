@@ -42,6 +42,7 @@ def plan_to_goal(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--execute", action="store_true", help="also have the plan carried out")
     options = parser.parse_args(remove_ros_args(arguments)[1:])
     image, segmentation = _read_images(parser, options)
+    plan = _read_plan(parser, options)
     prepare(arguments)
     try:
         with PlannerClient() as planner:
@@ -50,6 +51,7 @@ def plan_to_goal(arguments: Sequence[str] | None = None) -> int:
                 goal_image=image,
                 goal_segmentation=segmentation,
                 execute=options.execute,
+                plan=plan,
                 timeout=options.timeout,
             )
     except PlannerUnavailableError as error:
@@ -80,6 +82,7 @@ def achieve_goal(arguments: Sequence[str] | None = None) -> int:
     parser = _parser("achieve_goal", "Achieves a goal, until the camera confirms it.", 600.0)
     options = parser.parse_args(remove_ros_args(arguments)[1:])
     image, segmentation = _read_images(parser, options)
+    plan = _read_plan(parser, options)
     prepare(arguments)
     try:
         with PlannerClient() as planner:
@@ -88,6 +91,7 @@ def achieve_goal(arguments: Sequence[str] | None = None) -> int:
                     options.goal or "",
                     goal_image=image,
                     goal_segmentation=segmentation,
+                    plan=plan,
                     timeout=min(ANSWER_TIMEOUT, options.timeout),
                 )
             except KeyboardInterrupt as interrupt:
@@ -118,7 +122,8 @@ def _parser(name: str, description: str, timeout: float) -> argparse.ArgumentPar
     parser = argparse.ArgumentParser(
         prog=name,
         description=description,
-        epilog="Give a goal text, or a goal image with its segmentation.",
+        epilog="Give a goal text, or a goal image with its segmentation; with a plan of another "
+        "planner none is needed.",
     )
     parser.add_argument("goal", nargs="?", help="such as 'red on blue'")
     parser.add_argument("--timeout", type=float, default=timeout, help="[s], default %(default)s")
@@ -126,7 +131,26 @@ def _parser(name: str, description: str, timeout: float) -> argparse.ArgumentPar
     parser.add_argument(
         "--goal-segmentation", type=Path, metavar="PNG", help="its instance labels, 8 or 16 bits"
     )
+    parser.add_argument(
+        "--plan",
+        type=Path,
+        metavar="FILE",
+        help="another planner's plan, in PDDL or as moves such as '(0, 2)', in place of a search",
+    )
     return parser
+
+
+def _read_plan(parser: argparse.ArgumentParser, options: argparse.Namespace) -> str:
+    """The text of another planner's plan, or nothing; ends the program if there is none in it."""
+    if options.plan is None:
+        return ""
+    try:
+        text = str(options.plan.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        parser.error(f"--plan {options.plan}: cannot read it: {error}")
+    if not text.strip():
+        parser.error(f"--plan {options.plan}: there is nothing in it")
+    return text
 
 
 def _read_images(
@@ -137,7 +161,7 @@ def _read_images(
     if (image is None) != (labels is None):
         parser.error("--goal-image and --goal-segmentation belong together")
     if image is None:
-        if options.goal is None:
+        if options.goal is None and options.plan is None:
             parser.error("give a goal, such as 'red on blue'")
         return None, None
     try:

@@ -88,12 +88,14 @@ class ClosedLoop:
         self._requested = scenes.now()
         self.outcome = Outcome()
 
-    def run(self, read: Callable[[], Callable[[Stacks], Goal]]) -> Outcome:
+    def run(self, read: Callable[[], Callable[[Stacks], Goal]], given: str = "") -> Outcome:
         """Works until the goal is confirmed or cannot be reached; every end is an outcome.
 
         Args:
             read: gives the function that resolves the goal in the first scene.
+            given: another planner's plan, with which to begin.
         """
+        self._possible.given = given.strip()
         try:
             status, message = self._achieve(read)
             if conflict := self._conflict():

@@ -18,19 +18,24 @@ from ..search.possible import Exclusion
 from ..settings import Settings
 from .plan import Plan
 from .scene import Scene
-from .scene_plan import plan_in
+from .scene_plan import given_plan_in, plan_in
 
 #: So many refusals in one scene; then it is given up like any other motion that fails.
 MOST: Final = 60
 
 
 class PossibleMoves:
-    """The moves that were refused, in order."""
+    """The moves that were refused, in order.
+
+    Attributes:
+        given: another planner's plan, which is taken in place of the first search.
+    """
 
     def __init__(self, settings: Settings, cancelled: Callable[[], bool]) -> None:
         self._settings, self._cancelled = settings, cancelled
         self._exclusions: list[Exclusion] = []
         self.just_refused = False
+        self.given = ""
         self._again = True
 
     def refused(self, plan: Plan, report: MotionReport) -> Exclusion | None:
@@ -47,11 +52,15 @@ class PossibleMoves:
         return exclusion
 
     def plan(self, scene: Scene, goal: Goal) -> SearchResult:
-        """A shortest plan without what was refused.
+        """The plan that was given, the first time; then a shortest one without what was refused.
 
         Raises:
-            PlannerError: as the search; ImpossibleError where only refused moves lead to the goal.
+            PlannerError: as the search; GivenPlanError where the plan that was given does not hold;
+                ImpossibleError where only refused moves lead to the goal.
         """
+        if self.given:
+            text, self.given = self.given, ""
+            return given_plan_in(scene, text, goal, self._settings)
         return plan_in(scene, goal, self._settings, self._cancelled, self._exclusions)
 
     def forget_once(self) -> bool:

@@ -8,11 +8,12 @@ from typing import Final
 
 from .a_star import a_star
 from .both_ends import both_ends
-from .both_ends_first import both_ends_first
 from .bounded import bounded
 from .breadth_first import breadth_first
 from .limits import Limits
 from .patterns_both_ends import patterns_both_ends
+from .patterns_first import patterns_first
+from .peers.engine import PREFIX, Engine
 from .state import Problem, State
 
 #: Gives a path from the problem's start to a goal, both included: a shortest one, unless it tells
@@ -24,7 +25,7 @@ AUTO: Final = "auto"
 
 
 ALGORITHMS: Final[dict[str, SearchAlgorithm]] = {
-    AUTO: both_ends_first,
+    AUTO: patterns_first,
     "breadth_first": breadth_first,
     "both_ends": both_ends,
     "a_star": a_star,
@@ -34,7 +35,14 @@ ALGORITHMS: Final[dict[str, SearchAlgorithm]] = {
 
 
 def algorithm_named(name: str) -> SearchAlgorithm:
-    """Raises ValueError for an unknown name; the sentence lists the known ones."""
+    """One of :data:`ALGORITHMS`, or an engine of Unified Planning by ``up:ENGINE``.
+
+    Raises:
+        ValueError: an unknown name, with the known ones; or Unified Planning is not installed.
+    """
+    if name.startswith(PREFIX):
+        return Engine(name.removeprefix(PREFIX))
     if name not in ALGORITHMS:
-        raise ValueError(f"no search algorithm {name!r}; known: {', '.join(ALGORITHMS)}")
+        known = f"{', '.join(ALGORITHMS)}, {PREFIX}ENGINE"
+        raise ValueError(f"no search algorithm {name!r}; known: {known}")
     return ALGORITHMS[name]

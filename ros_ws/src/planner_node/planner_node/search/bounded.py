@@ -2,7 +2,8 @@
 """A plan that is not much longer than a shortest one, with the proof of how much at most.
 
 Below: the blocks are split into parts that are small enough for shortest plans; the moves that
-every part needs by itself add up to a bound. Above: the best of many constructed plans, out of
+every part needs by itself add up to a bound. So do those of parts that share blocks, each counted
+for as many parts as a block is in. Above: the best of many constructed plans, out of
 which blocks are taken and put back where they cost fewer moves, see
 :mod:`~planner_node.search.reinsertion`.
 """
@@ -10,20 +11,22 @@ which blocks are taken and put back where they cost fewer moves, see
 from __future__ import annotations
 
 import random
+from collections.abc import Sequence
 from itertools import combinations
 from typing import Final
 
 from scene_graph import Move, Stacks
 
-from ..goals.goal import Goal
+from ..goals.goal import complete_goal
 from .construct import constructed
 from .ends import encoded_word, start_word
 from .groups import complete_groups, group_sizes
-from .limits import Limits
+from .limits import Limits, PartTooLargeError
+from .patterns import pattern_count
 from .patterns_both_ends import patterns_both_ends, states_along
+from .patterns_first import patterns_first
 from .reinsertion import shortened
 from .state import Problem, State
-from .wanted import Wanted
 
 #: A plan of this many times the proven bound is good enough.
 ENOUGH: Final = 1.05
@@ -38,6 +41,11 @@ WORK_OF_A_BLOCK: Final = 12_000
 FIRST_SHARE: Final = 0.6
 #: Patterns of a group of the split that is tried for the bound.
 GUIDE_PATTERNS: Final = 16_000
+#: Up to so many places three groups in turn are looked at together, of so many blocks each, as long
+#: as there are no more states than that.
+FEW_PLACES: Final = 3
+CIRCLE: Final = 4
+CIRCLE_EXPANSIONS: Final = 60_000
 
 
 def bounded(problem: Problem, limits: Limits) -> list[State]:
@@ -49,7 +57,7 @@ def bounded(problem: Problem, limits: Limits) -> list[State]:
     target = problem.goal.state(names, len(problem.initial))
     if target is None or len(problem.start) <= 2 or len(names) <= WHOLE:
         return patterns_both_ends(problem, limits)
-    least = _least(problem, limits)
+    least = _least(problem, target, limits)
     limits.prove_at_least(least)
     work = WORK_OF_A_BLOCK * len(names)
 
@@ -75,30 +83,49 @@ def _constructed(initial: Stacks, target: Stacks, limits: Limits) -> list[list[M
     return sorted(plans, key=len)[:KEPT]
 
 
-def _least(problem: Problem, limits: Limits) -> int:
-    """Moves that every plan has: those that parts of the blocks need by themselves."""
-    wanted, places = Wanted(problem), len(problem.start)
+def _least(problem: Problem, target: Stacks, limits: Limits) -> int:
+    """Moves that every plan has: those that parts of the blocks need by themselves.
+
+    Parts that share no block add up. Where every block is in three parts of a circle, their sum
+    counts every move three times.
+    """
+    places = len(problem.start)
     assert problem.target is not None
     start, goal = start_word(problem), encoded_word(problem, problem.target)
-    sizes = group_sizes(places, wanted.blocks, GUIDE_PATTERNS)
-    groups, _ = complete_groups(start, goal, places, sizes)
     names = list(problem.symbols)
 
-    def solved(blocks: tuple[int, ...]) -> int:
+    def solved(blocks: Sequence[int], expansions: int | None = None) -> int:
         part = {names[block] for block in blocks}
-        initial = _only(problem.initial, part)
-        needed = Goal(wanted.relations_among(part))
-        if needed.holds(initial):
+        initial, wanted = _only(problem.initial, part), _only(target, part)
+        if initial == wanted:
             return 0
-        return len(patterns_both_ends(Problem(initial, needed), limits.of_a_part())) - 1
+        within = limits.of_a_part(expansions)
+        try:
+            return len(patterns_first(Problem(initial, complete_goal(wanted)), within)) - 1
+        except PartTooLargeError:
+            return within.at_least or 0
 
+    groups, _ = complete_groups(
+        start, goal, places, group_sizes(places, len(names), GUIDE_PATTERNS)
+    )
     alone = [solved(group.named) for group in groups]
     gains = {}
     for one, other in combinations(range(len(groups)), 2):
         pair = (*groups[one].named, *groups[other].named)
         if len(pair) <= WHOLE:
             gains[one, other] = solved(pair) - alone[one] - alone[other]
-    return sum(alone) + _best_matching(gains, frozenset(range(len(groups))))
+    least = sum(alone) + _best_matching(gains, frozenset(range(len(groups))))
+    if places > FEW_PLACES:
+        return least
+    sizes = group_sizes(places, len(names), pattern_count(places, CIRCLE, 0))
+    if len(sizes) < 4:
+        return least
+    circle = [group.named for group in complete_groups(start, goal, places, sizes)[0]]
+    total = sum(
+        solved([*circle[index - 2], *circle[index - 1], *circle[index]], CIRCLE_EXPANSIONS)
+        for index in range(len(circle))
+    )
+    return max(least, -(-total // 3))
 
 
 def _best_matching(gains: dict[tuple[int, int], int], left: frozenset[int]) -> int:

@@ -39,11 +39,23 @@ class Group:
 
 def group_sizes(places: int, blocks: int, largest: int = GOOD_PATTERNS) -> list[int]:
     """Sizes, as equal as possible, of the fewest groups with patterns of up to that number."""
+    size = _largest_size(places, blocks, largest)
+    count = max(1, -(-blocks // size))
+    return [len(part) for part in np.array_split(np.arange(blocks), count)]
+
+
+def largest_first(places: int, blocks: int, largest: int = GOOD_PATTERNS) -> list[int]:
+    """Sizes of the fewest such groups, each as large as possible before the next."""
+    size = _largest_size(places, blocks, largest)
+    full, rest = divmod(blocks, size)
+    return [size] * full + [rest] * (rest > 0)
+
+
+def _largest_size(places: int, blocks: int, largest: int) -> int:
     size = 1
     while size < blocks and pattern_count(places, size + 1, 0) <= largest:
         size += 1
-    count = max(1, -(-blocks // size))
-    return [len(part) for part in np.array_split(np.arange(blocks), count)]
+    return size
 
 
 def complete_groups(
@@ -74,10 +86,12 @@ def complete_groups(
             shift = np.uint64(size * space.packing.width + place * space.packing.end_width)
             keys |= ends.astype(np.uint64) << shift
         indices = np.searchsorted(space.keys, keys)
-        shapes, which = np.unique(heights_b, axis=0, return_inverse=True)
-        for number, shape in enumerate(shapes):
-            rows = which.ravel() == number
-            total[rows] += space.canonical_distances(tuple(shape.tolist()))[indices[rows]]
+        # Each shape as one number, which are told apart much more quickly than rows.
+        codes = heights_b @ (64 ** np.arange(places))
+        for code in np.unique(codes):
+            rows = np.flatnonzero(codes == code)
+            shape = tuple(heights_b[rows[0]].tolist())
+            total[rows] += space.canonical_distances(shape)[indices[rows]]
     best = int(np.argmax(total))
     cuts = np.split(splits[best], np.cumsum(sizes)[:-1])
     return tuple(Group(tuple(sorted(part.tolist()))) for part in cuts), int(total[best])
