@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual record eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual record eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-refusals bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -88,6 +88,9 @@ bench-motion: setup  ## time to find motions, and how long they take; PEERS=venv
 
 bench-obstacles: setup  ## goals among walls, narrow places and places out of reach; QUICK=1
 	@$(RUN) python benchmarks/bench_obstacles.py
+
+bench-refusals: setup  ## moves that cannot be: whether the reason is right, and what would help; QUICK=1
+	@$(RUN) python benchmarks/bench_refusals.py
 
 bench-planner: setup  ## search times, lengths and bounds; FD=venv with up-fast-downward QUICK=1
 	@$(RUN) python benchmarks/bench_planner.py $(if $(FD),--fd "$(FD)")

@@ -25,12 +25,18 @@ MOST: Final = 60
 
 
 class PossibleMoves:
-    """The moves that were refused, in order."""
+    """The moves that were refused, in order.
+
+    Attributes:
+        just_refused: whether the newest plan was.
+        first_refused: the first plan in the present scene that was; shortest, had it been possible.
+    """
 
     def __init__(self, settings: Settings, cancelled: Callable[[], bool]) -> None:
         self._settings, self._cancelled = settings, cancelled
         self._exclusions: list[Exclusion] = []
         self.just_refused = False
+        self.first_refused: Plan | None = None
         self._again = True
 
     def refused(self, plan: Plan, report: MotionReport) -> Exclusion | None:
@@ -42,6 +48,8 @@ class PossibleMoves:
             return None
         exclusion = exclusion_of(plan, report)
         if exclusion is not None:
+            if not self._exclusions:
+                self.first_refused = plan
             self._exclusions.append(exclusion)
             self.just_refused = True
         return exclusion
