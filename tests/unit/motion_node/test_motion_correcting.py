@@ -80,12 +80,12 @@ def test_a_place_that_moved_is_reached_with_the_block_in_hand(
     planner: MotionPlanner, motion: Motion
 ) -> None:
     way = motion.trajectory.intervals[2]
-    at = way.start + 0.4 * (way.end - way.start)
+    at = way.start + 0.2 * (way.end - way.start)
     x, y, z = GRAPH.places[2].position_world
-    places = (*GRAPH.places[:2], replace(GRAPH.places[2], position_world=(x - 0.04, y + 0.02, z)))
+    places = (*GRAPH.places[:2], replace(GRAPH.places[2], position_world=(x - 0.02, y + 0.02, z)))
     after = corrected(planner, motion, at, replace(GRAPH, places=places), MOVES)
     put = after.trajectory.sample(after.trajectory.intervals[0].end)[0].arm
-    np.testing.assert_allclose(planner.model.tool_at(put)[:2], (x - 0.04, y + 0.02), atol=1e-3)
+    np.testing.assert_allclose(planner.model.tool_at(put)[:2], (x - 0.02, y + 0.02), atol=1e-3)
     _, rates = motion.trajectory.sample(at)
     np.testing.assert_allclose(after.trajectory.sample(0.0)[1].arm, rates.arm, atol=1e-9)
 

@@ -141,7 +141,7 @@ def test_markers_come_move_and_go_by_namespace_and_id() -> None:
         (marker(turn=(0, 0, 0, 0)), "orientation", ObstaclesHeard.INVALID),
         (marker(turn=(np.nan, 0, 0, 1)), "orientation", ObstaclesHeard.INVALID),
         (marker(Marker.TEXT_VIEW_FACING), "type = 9", ObstaclesHeard.INVALID),
-        (marker(Marker.SPHERE, size=(0.1, 0.2, 0.1)), "spheres", ObstaclesHeard.INVALID),
+        (marker(Marker.SPHERE, size=(0.1, 0.2, 0.1)), "a sphere is", ObstaclesHeard.INVALID),
         (marker(Marker.LINE_LIST), "points", ObstaclesHeard.INVALID),
         (marker(Marker.LINE_LIST, points=[(0, 0, 0)]), "points", ObstaclesHeard.INVALID),
         (marker(action=7), "action = 7", ObstaclesHeard.INVALID),

@@ -11,6 +11,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,9 @@ from .refining import objection
 from .timing.time_paths import time_paths
 
 Array = NDArray[np.float64]
+
+#: Between its steps, where a correction may begin, a way may be so much nearer to stacks [m].
+_NEARER: Final = 0.004
 
 
 def corrected(
@@ -85,8 +89,13 @@ def corrected(
     paths = []
     for phase, old, first, last in zip(left, before, configurations, configurations[1:]):
         share = np.linspace(0.0, 1.0, len(old))[:, None]
+        share = share**2 * (3 - 2 * share)
         guess = old + (1 - share) * (first - old[0]) + share * (last - old[-1])
-        paths += problem.solve([phase], [first, last], clear, [guess])
+        moving = phase is left[0] and bool(np.any(rates.arm))
+        own_clear = replace(clear, margin=clear.margin - _NEARER) if moving else clear
+        paths += problem.solve(
+            [phase], [first, last], own_clear, [guess], old[1] if moving else None
+        )
     try:
         trajectory = time_paths(
             *(paths, planner.limits, planner.timing, positions.fingers), moving=rates.arm

@@ -100,7 +100,6 @@ class MotionReport:
     violation: float = 0.0
     excludes: str = ""
     suggestion: str = ""
-    corrections: int = 0
     obstacles: int = 0
     obstacles_heard: ObstaclesHeard = ObstaclesHeard.TAKEN
     obstacles_problem: str = ""

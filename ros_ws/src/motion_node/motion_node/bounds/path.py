@@ -95,10 +95,14 @@ class PathProblem:
         return guesses(ways, self._inverse, *_TRIES[0])
 
     def _ways(
-        self, phases: Sequence[Phase], configurations: Sequence[Array], clear: Clearances
+        self,
+        phases: Sequence[Phase],
+        configurations: Sequence[Array],
+        clear: Clearances,
+        moving: bool = False,
     ) -> list[Way]:
         return [
-            Way(self._model, self._settings, phase, start, goal, clear)
+            Way(self._model, self._settings, phase, start, goal, clear, moving)
             for phase, start, goal in zip(phases, configurations, configurations[1:])
         ]
 
@@ -108,6 +112,7 @@ class PathProblem:
         configurations: Sequence[Array],
         clear: Clearances,
         first: Sequence[Array] = (),
+        second: Array | None = None,
     ) -> list[PhasePath]:
         """P3 for consecutive phases between given configurations at rest.
 
@@ -115,14 +120,20 @@ class PathProblem:
             phases: as many as the problem was built for.
             configurations: at their ends, one more than phases, each of shape (n,) [rad].
             first: what ``guesses`` found, if it was asked.
+            second: the configuration after the first one, shape (n,) [rad], where the arm moves
+                already: both are the prefix of 3.4; None: it is at rest.
 
         Raises:
             InfeasibleError: with bound ``path``, naming the constraint that is violated most.
         """
         settings = self._settings
-        ways = self._ways(phases, configurations, clear)
+        ways = self._ways(phases, configurations, clear, moving=second is not None)
         demands = self._demands(ways)
         lower, upper = self._limits(configurations)
+        if second is not None:
+            shape = (len(phases) * settings.steps + 1, 1)
+            lower, upper = np.tile(lower, shape), np.tile(upper, shape)
+            lower[1] = upper[1] = second
         attempts: list[Solution] = []
         for x, thorough in self._starts(ways, demands, first):
             solution = self._problem.solve(x, demands, lower, upper, thorough)

@@ -172,8 +172,10 @@ def _smoothed(
     means[stops - 1] = positions[:, -1]
     rates[stops - counts], rates[stops - 1] = before[:, 0], 0.0
     factors = _slower(means, rates, np.diff(np.concatenate(own)), stops, limits)
-    if velocity is not None and factors.max() > 1.0 + _ROUNDING:
-        raise ValueError("the arm is too fast to leave its way here")
+    if velocity is not None:
+        if factors.max() > 1.0 + _ROUNDING:
+            raise ValueError("the arm is too fast to leave its way here")
+        factors = np.ones_like(factors)
     return [
         Way(factor * moments, places, speeds / factor)
         for factor, moments, places, speeds in zip(

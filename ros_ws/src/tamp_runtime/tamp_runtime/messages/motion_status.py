@@ -24,7 +24,7 @@ from .stamps import nanoseconds
 _SAME: Final = (
     *("plan_id", "message", "bound", "object_name", "constraint", "phase", "held"),
     *("move", "moves_done", "moves_total", "optimisation_seconds", "duration"),
-    *("violation", "excludes", "suggestion", "corrections"),
+    *("violation", "excludes", "suggestion"),
     *("obstacles", "obstacles_problem"),
 )
 
