@@ -59,7 +59,9 @@ _GROWTH: Final = 0.005
 #: So many changes are checked at most.
 _CHECKED: Final = 30
 #: Nothing is looked for longer, in time of the processor [s].
-PATIENCE: Final = 12.0
+PATIENCE: Final = 10.0
+#: Nor longer than this on a machine that has a lot else to do [s].
+LONGEST: Final = 60.0
 
 #: What is asked at the end of a phase, or along it, on a table.
 DemandsOn = Callable[[Table], list[Demand]]
@@ -107,9 +109,14 @@ class Suggestions:
         """
         table = Table(graph, self._planner.obstacles)
         search = _Search(self._planner, table, moves, arm, fingers)
-        deadline = time.thread_time() + PATIENCE
+        begin, worked = time.monotonic(), time.thread_time()
+
+        def over() -> bool:
+            late = time.monotonic() - begin > LONGEST
+            return late or time.thread_time() - worked > PATIENCE or stopped()
+
         with _among(self._planner, table):
-            change = search.smallest(error, lambda: stopped() or time.thread_time() > deadline)
+            change = search.smallest(error, over)
         if change is None:
             return None
         return Suggestion(change, change.words(table), change.made(table))
@@ -120,14 +127,14 @@ class _Open:
     """A change that is not checked yet, the smallest first.
 
     Attributes:
-        mends: the bound, move and phase that it is meant for.
+        mends: the bounds, moves and phases that it is meant for.
         growth: what is added at least if it is not enough [m].
     """
 
     size: float
     order: int
     change: Change = field(compare=False)
-    mends: tuple[str, int, str] = field(compare=False)
+    mends: frozenset[tuple[str, int, str]] = field(compare=False)
     growth: float = field(default=_GROWTH, compare=False)
 
 
@@ -179,7 +186,8 @@ class _Search:
                 for levers in self._families(error, tries)
             ]
             first = [change for change in found if change is not None]
-        waiting = [_Open(c.size, index, c, _what(error)) for index, c in enumerate(first)]
+        what = frozenset({_what(error)})
+        waiting = [_Open(c.size, index, c, what) for index, c in enumerate(first)]
         heapify(waiting)
         for count in range(len(first), len(first) + _CHECKED):
             if not waiting or over():
@@ -190,13 +198,14 @@ class _Search:
             if again is None:
                 return here.change
             more, growth = None, here.growth
-            if _what(again) != here.mends:
+            if _what(again) not in here.mends:
                 tries = self._tries(again, table)
                 more = self._mended(here.change.levers, table, tries, here.change, over)
-            if more is None or more.size < here.change.size + growth:
+            if more is None or more.beside(here.change) < growth:
                 more, growth = here.change.grown(growth), 2 * growth
             if more is not None:
-                heappush(waiting, _Open(more.size, count, more, _what(again), growth))
+                mends = here.mends | {_what(again)}
+                heappush(waiting, _Open(more.size, count, more, mends, growth))
         return None
 
     def _refusal(self, table: Table) -> InfeasibleError | None:

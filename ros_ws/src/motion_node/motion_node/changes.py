@@ -237,6 +237,10 @@ class Change:
         """Sum of the amounts [m]."""
         return float(np.abs(self.amounts).sum())
 
+    def beside(self, other: Change) -> float:
+        """How far it is from another change of the same levers [m]."""
+        return float(np.abs(np.subtract(self.amounts, other.amounts)).sum())
+
     def made(self, table: Table) -> Table:
         """The table after it."""
         for lever, amount in zip(self.levers, self.amounts):

@@ -190,7 +190,7 @@ class PathProblem:
 
         See :meth:`KOrderProblem.least_changes`.
         """
-        limits = self._limits(start[[0, -1]])
+        limits = self._limits([start[0]])
         return self._problem.least_changes(start, demands, unit, changed, reach, limits)
 
     def _starts(
