@@ -20,7 +20,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_graph import Move, SceneGraph, base_index
+from scene_graph import Move, SceneGraph, base_index, base_name
 
 from .blocks import read_scene
 from .bounds import Keyframes
@@ -182,8 +182,8 @@ class _Search:
         else:
             tries = self._tries(error, self._table)
             found = [
-                self._mended(levers, self._table, tries, Change((), ()), over)
-                for levers in self._families(error, tries)
+                self._mended(levers, self._table, hopeful, Change((), ()), over)
+                for levers, hopeful in self._families(error, tries)
             ]
             first = [change for change in found if change is not None]
         what = frozenset({_what(error)})
@@ -341,31 +341,46 @@ class _Search:
 
     def _families(
         self, error: InfeasibleError, tries: Sequence[_Try]
-    ) -> Iterator[tuple[Lever, ...]]:
-        """Levers that are pulled together: what the hand goes to, each thing that is in the way,
-        then all of these."""
+    ) -> Iterator[tuple[tuple[Lever, ...], list[_Try]]]:
+        """Levers that are pulled together, with the elastic problems in which that may be enough.
+
+        What the hand goes to is one, each thing that is in the way, then all of these: enough is
+        what has to do with all that a starting point misses.
+        """
         move = self._moves[min(error.move, len(self._moves) - 1)]
         ends = (move.source, move.target)
         own = ends[error.phase == PLACE]
         if error.bound != PATH:
-            yield self._stack(own)
-        rows = [error.constraint, *(row for item in tries for row in item.missed)]
-        others = list(dict.fromkeys(row.rpartition(" to ")[2] for row in rows))
+            yield self._stack(own), list(tries)
         known = {item.name for item in self._table.obstacles}
-        obstacles = [name for name in others if name in known][:_MOST]
+        known |= {base_name(i) for i in range(len(self._stacks)) if i not in ends}
+
+        def in_the_way(rows: Sequence[str]) -> dict[str, None]:
+            return dict.fromkeys(n for row in rows if (n := row.rpartition(" to ")[2]) in known)
+
+        others = in_the_way([error.constraint, *(row for item in tries for row in item.missed)])
+
+        def enough(*names: str) -> list[_Try]:
+            return [item for item in tries if set(in_the_way(item.missed)) <= set(names)]
+
+        known_obstacles = {item.name for item in self._table.obstacles}
+        obstacles = [name for name in others if name in known_obstacles][:_MOST]
         heights: list[Lever] = [
             height_lever(self._table.obstacles, name, self._clear.floor) for name in obstacles
         ]
         sideways = [(ObstacleLever(name, X), ObstacleLever(name, Y)) for name in obstacles]
-        yield from [(lever,) for lever in heights]
-        yield from sideways
+        for name, height, pair in zip(obstacles, heights, sideways):
+            if alone := enough(name) or (list(tries) if len(obstacles) == 1 else []):
+                yield (height,), alone
+                yield pair, alone
         if len(obstacles) > 1:
-            yield tuple(heights)
-            yield tuple(lever for pair in sideways for lever in pair)
+            together = enough(*obstacles) or list(tries)
+            yield tuple(heights), together
+            yield tuple(lever for pair in sideways for lever in pair), together
         for name in others:
             stack = base_index(name)
-            if stack is not None and stack not in ends and stack < len(self._stacks):
-                yield self._stack(stack)
+            if stack is not None:
+                yield self._stack(stack), enough(name) or list(tries)
 
 
 def _what(error: InfeasibleError) -> tuple[str, int, str]:
