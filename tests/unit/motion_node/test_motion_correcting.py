@@ -98,7 +98,7 @@ def test_only_the_way_to_the_next_switch(planner: MotionPlanner, motion: Motion)
     assert [phase.kind for phase in part.phases] == ["pick"]
     ends = [m.trajectory.sample(m.trajectory.intervals[0].end)[0].arm for m in (whole, part)]
     tools = [planner.model.tool_at(q) for q in ends]
-    np.testing.assert_allclose(*tools, atol=1e-3)
+    np.testing.assert_allclose(tools[0], tools[1], atol=1e-3)
 
 
 def test_fingers_that_close_are_not_corrected(planner: MotionPlanner, motion: Motion) -> None:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -45,7 +45,7 @@ def marker(kind: int = Marker.CUBE, **fields: Any) -> Marker:
     return result
 
 
-def read(*markers: Marker, known: Heard | None = None) -> Heard:
+def read(*markers: Marker, known: Mapping[str, tuple[Obstacle, ...]] | None = None) -> Heard:
     message = MarkerArray(markers=list(markers))
     return obstacles_from_markers(message, known or {}, frame_is_the_arms)
 
