@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual record eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference peers
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock peers train-visual record eval-perception eval-photo eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-refusals bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -58,6 +58,9 @@ eval-perception: setup  ## graphs right, accepted and refused, set by set; SET= 
 	@$(RUN) python benchmarks/eval_perception.py $(if $(SET),--set "$(SET)") $(if $(N),--n $(N)) \
 	  $(if $(JOBS),--jobs $(JOBS)) $(if $(RESUME),--resume) $(ARGS)
 
+eval-photo: setup  ## graphs of photorealistic pictures; BPY=venv with bpy N= QUICK=1
+	@$(RUN) python benchmarks/eval_photo.py $(if $(N),--n $(N)) $(if $(BPY),--bpy "$(BPY)") $(ARGS)
+
 eval-visual: setup  ## the visual module with masks given, on unseen states; QUICK=1
 	@$(RUN) python benchmarks/eval_visual.py $(ARGS)
 
@@ -88,6 +91,9 @@ bench-motion: setup  ## time to find motions, and how long they take; PEERS=venv
 
 bench-obstacles: setup  ## goals among walls, narrow places and places out of reach; QUICK=1
 	@$(RUN) python benchmarks/bench_obstacles.py
+
+bench-refusals: setup  ## moves that cannot be: whether the reason is right, and what would help; QUICK=1
+	@$(RUN) python benchmarks/bench_refusals.py
 
 bench-planner: setup  ## search times, lengths and bounds; FD=venv with up-fast-downward QUICK=1
 	@$(RUN) python benchmarks/bench_planner.py $(if $(FD),--fd "$(FD)")

@@ -26,7 +26,8 @@ class Bench:
         self.stop, self.plan = threading.Event(), PLAN
         self.planners: Iterator[FakePlanner | None] = iter(lambda: self.planner, 0)
         self.settings = ExecutionSettings()
-        self.conflict = ""
+        self.conflict, self.suggestion = "", ""
+        self.in_the_way: Callable[[float], str] = lambda _at: ""
         self.follower = Follower(self.arm, self.arm.send, self.settings)
         self.condition = Condition(
             self.arm, lambda: self.follower.grip, HOME_Q, OPEN, lambda q: np.array([*q, 0.5])
@@ -38,6 +39,8 @@ class Bench:
             self.condition,
             lambda: self.settings,
             lambda: self.conflict,
+            suggest=lambda *_: self.suggestion,
+            in_the_way=lambda _plan, _motion, at: self.in_the_way(at),
         )
 
     def carry_out(self, plan: Plan = PLAN) -> MotionReport:

@@ -63,6 +63,58 @@ def test_a_plan_is_carried_out_and_reported(bench: Bench) -> None:
     assert progress == sorted(progress)
 
 
+def test_why_a_plan_was_refused_is_said_with_what_would_help_and_nothing_moves(
+    bench: Bench,
+) -> None:
+    bench.planner.errors["solve"] = InfeasibleError("pose", "clearance of hand to wall")
+    bench.suggestion = "move obstacle wall 12 mm to the left"
+    assert bench.carry_out().suggestion == "", "nobody has asked"
+    end = bench.carry_out(replace(PLAN, plan_id="b", explain=True))
+    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.INFEASIBLE)
+    assert end.suggestion == "move obstacle wall 12 mm to the left"
+    assert not bench.arm.sent
+
+
+def test_a_plan_that_is_only_asked_about_is_not_carried_out_even_if_it_could_be(
+    bench: Bench,
+) -> None:
+    end = bench.carry_out(replace(PLAN, explain=True))
+    assert end.state is MotionState.CANCELLED
+    assert end.message == "the plan could be carried out; nothing was moved, as asked"
+    assert not bench.arm.sent
+
+
+@pytest.mark.parametrize(("interval", "done"), [(0, 0), (4, 1)])
+def test_an_obstacle_in_the_way_stops_the_arm_at_once_and_is_told(
+    bench: Bench, interval: int, done: int
+) -> None:
+    way = two_moves().intervals[interval]
+    middle = (way.start + way.end) / 2
+    bench.in_the_way = lambda at: "obstacle wall is in the way of the hand" if at > middle else ""
+    end = bench.carry_out()
+    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.OBSTRUCTED)
+    assert end.message == (
+        "obstacle wall is in the way of the hand; the arm was stopped; the arm is home"
+    )
+    assert (end.held, end.moves_done) == ("", done)
+    brake, _ = bench.arm.sent[1]
+    assert brake.intervals[-1].phase == way.phase
+    assert bench.planner.ways_home == [done]
+
+
+def test_an_obstacle_in_the_way_of_a_block_stops_it_before_it_is_put_down(bench: Bench) -> None:
+    way = two_moves().intervals[2]
+    middle = (way.start + way.end) / 2
+    bench.in_the_way = lambda at: "obstacle wall is in the way of the hand" if at > middle else ""
+    end = bench.carry_out()
+    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.OBSTRUCTED)
+    brake, joints = bench.arm.sent[1]
+    assert brake.intervals[-1].phase == way.phase
+    assert joints.fingers.min() < BESIDE, "it holds the block as it stops"
+    assert bench.planner.put_downs == [0]
+    assert end.held == ""
+
+
 @pytest.mark.parametrize(
     ("phase", "move", "moves_done"),
     [(PICK, 0, 0), (PLACE, 0, 1), (PICK, 1, 1), (PLACE, 1, 2), (HOME, 1, 2)],

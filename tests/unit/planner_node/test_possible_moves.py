@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from loop_bench import REACHED, Behaviour, LoopBench, obey
+from loop_bench import REACHED, Behaviour, LoopBench, ignore, obey
 from tamp_runtime.motion_report import Excludes, MotionReason, MotionReport, MotionState
 
 from planner_node.loop import Plan, Status
@@ -50,8 +50,46 @@ def test_a_place_that_cannot_be_reached_is_not_used() -> None:
     assert bench.stacks == ((), ("blue_box",), ("green_box", "red_box"))
 
 
+def explaining(suggestion: str) -> Behaviour:
+    """A motion node that only says what would help."""
+
+    def behaviour(_bench: LoopBench, plan: Plan) -> Iterator[MotionReport]:
+        assert plan.explain, "a plan that was refused is not to be carried out"
+        yield MotionReport(state=MotionState.OPTIMISING, message="looking for what would help")
+        yield MotionReport(
+            state=MotionState.FAILED, reason=MotionReason.INFEASIBLE, suggestion=suggestion
+        )
+
+    return behaviour
+
+
+def test_what_would_help_is_asked_of_the_first_plan_and_said() -> None:
+    words = "move obstacle wall 12 mm to the left"
+    bench = LoopBench(*[refusing(2, "red_box")] * 2, explaining(words))
+    outcome = bench.achieve("red on stack2")
+    assert outcome.status == Status.MOTION_FAILED
+    assert f"12 mm missing (pose of the place); what would help: {words}" in outcome.message
+    assert bench.plans[-1].explain
+    assert bench.plans[-1].moves == bench.plans[0].moves
+    assert outcome.moves_executed == 0
+
+
+def test_without_a_suggestion_nothing_is_said_to_help() -> None:
+    bench = LoopBench(*[refusing(2, "red_box")] * 2, explaining(""))
+    outcome = bench.achieve("red on stack2")
+    assert outcome.status == Status.MOTION_FAILED
+    assert "help" not in outcome.message
+
+
+def test_a_motion_node_that_does_not_answer_leaves_the_refusal_as_it_is() -> None:
+    bench = LoopBench(*[refusing(2, "red_box")] * 2, ignore)
+    outcome = bench.achieve("red on stack2")
+    assert (outcome.status, outcome.module) == (Status.MOTION_FAILED, "motion")
+    assert outcome.message.startswith("impossible: no sequence of moves that the arm can make")
+
+
 def test_what_is_impossible_is_said_with_all_that_is_excluded() -> None:
-    bench = LoopBench(*[refusing(2, "red_box")] * 2)
+    bench = LoopBench(*[refusing(2, "red_box")] * 2, explaining(""))
     outcome = bench.achieve("red on stack2")
     assert (outcome.status, outcome.module) == (Status.MOTION_FAILED, "motion")
     assert outcome.message.startswith("impossible: no sequence of moves that the arm can make")

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +12,21 @@ from tamp_interfaces.msg import SymbolicPlan
 from tamp_runtime.messages.scene_graph import graph_from_message, moves_from_messages
 from tamp_runtime.messages.stamps import duration_from_seconds, stamp_from_nanoseconds
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from visualization_msgs.msg import Marker, MarkerArray
+
+from scene_graph import rotation_from_quaternion
 
 from .errors import InvalidPlanError, JointStateError
 from .execution.plan import Plan
+from .obstacles import (
+    MOST,
+    Obstacle,
+    ObstacleError,
+    capsule,
+    upright_box,
+    upright_cylinder,
+    within_range,
+)
 from .robots import Arm
 from .robots.joints import JointValues
 from .timing.trajectory import Trajectory
@@ -33,6 +45,7 @@ def plan_from_message(message: SymbolicPlan) -> Plan:
         graph=graph,
         moves=moves_from_messages(message.moves),
         object_names=tuple(move.object_name for move in message.moves),
+        explain=message.explain,
         frame=message.initial.header.frame_id or message.header.frame_id,
     )
 
@@ -94,3 +107,82 @@ def joint_positions(message: JointState, arm: Arm) -> JointValues:
         bad = [name for name, fine in zip(arm.joint_names, np.isfinite(positions)) if not fine]
         raise JointStateError(f"joint_states arrive without finite positions of {', '.join(bad)}")
     return JointValues(*np.split(positions, [len(arm.arm_joints)]))
+
+
+def obstacles_from_markers(
+    message: MarkerArray,
+    known: Mapping[str, tuple[Obstacle, ...]],
+    check_frame: Callable[[str], None],
+) -> dict[str, tuple[Obstacle, ...]]:
+    """What stands around after a message, by the markers' names; what ``known`` has stays.
+
+    Markers as RViz takes them: ADD puts one of a namespace and id there, or in another place;
+    DELETE and DELETEALL take away. A CUBE, a CYLINDER and a SPHERE are what they are called; each
+    pair of points of a LINE_LIST is a capsule as thick as its ``scale.x``. What is not upright
+    counts as the upright box around it. Poses are absolute; colours are not read.
+
+    Args:
+        check_frame: raises InvalidPlanError for a frame that is not the arm's.
+
+    Raises:
+        ObstacleError: nothing of the message counts then; the sentence names marker and key.
+    """
+    found = dict(known)
+    for index, marker in enumerate(message.markers):
+        key = f"markers[{index}]"
+        if marker.action == Marker.DELETEALL:
+            found = {n: own for n, own in found.items() if marker.ns and not _of(n, marker.ns)}
+            continue
+        name = f"{marker.ns or 'obstacle'} {marker.id}" if marker.id else marker.ns or "obstacle"
+        if marker.action == Marker.DELETE:
+            found.pop(name, None)
+            continue
+        if marker.action != Marker.ADD:
+            raise ObstacleError(
+                f"{key}.action = {marker.action} is unknown; ADD, DELETE, DELETEALL"
+            )
+        if marker.lifetime.sec or marker.lifetime.nanosec:
+            raise ObstacleError(f"{key}.lifetime is not 0: obstacles stay until they are deleted")
+        try:
+            check_frame(marker.header.frame_id)
+        except InvalidPlanError as error:
+            raise ObstacleError(f"{key}.header: {error}", frame=True) from error
+        found[name] = tuple(within_range(item, key) for item in _parts(marker, name, key))
+    if sum(map(len, found.values())) > MOST:
+        raise ObstacleError(f"more than {MOST} obstacles are not kept clear of", number=True)
+    return found
+
+
+def _of(name: str, namespace: str) -> bool:
+    return name == namespace or name.rpartition(" ")[0] == namespace
+
+
+def _parts(marker: Marker, name: str, key: str) -> list[Obstacle]:
+    turn = marker.pose.orientation
+    quaternion = np.array([turn.x, turn.y, turn.z, turn.w])
+    norm = float(np.linalg.norm(quaternion))
+    if not 0.5 < norm < 2.0:  # nan, too
+        raise ObstacleError(f"{key}.pose.orientation = {quaternion.tolist()} is no quaternion")
+    x, y, z, w = (float(value) for value in quaternion / norm)
+    rotation = rotation_from_quaternion((x, y, z, w))
+    at = marker.pose.position
+    position = (at.x, at.y, at.z)
+    size = (marker.scale.x, marker.scale.y, marker.scale.z)
+    if marker.type == Marker.CUBE:
+        return [upright_box(name, size, position, rotation)]
+    if marker.type in (Marker.CYLINDER, Marker.SPHERE):
+        round_ = rotation if marker.type == Marker.CYLINDER else np.eye(3)
+        if marker.type == Marker.SPHERE and len(set(size)) > 1:
+            raise ObstacleError(
+                f"{key}.scale = {list(size)}: a sphere is as wide in all directions"
+            )
+        return [upright_cylinder(name, size, position, round_)]
+    if marker.type != Marker.LINE_LIST:
+        raise ObstacleError(
+            f"{key}.type = {marker.type} is unknown; CUBE, CYLINDER, SPHERE, or LINE_LIST"
+        )
+    points = [rotation @ (p.x, p.y, p.z) + position for p in marker.points]
+    if not points or len(points) % 2 or not np.isfinite(points).all():
+        raise ObstacleError(f"{key}.points are not pairs of finite points")
+    ends = [(float(a), float(b), float(c)) for a, b, c in points]
+    return [capsule(name, pair, marker.scale.x / 2) for pair in zip(ends[::2], ends[1::2])]

@@ -31,6 +31,8 @@ TABLE: Final = "the table"
 MOMENTS: Final = 24
 #: Stretches are halved so often; bodies move by a millimetre or so in the shortest.
 HALVINGS: Final = 6
+#: A way that is left for so short a time is over [s].
+_OVER: Final = 1e-3
 #: What is nearer than it may be where a way ends comes no nearer than this in between [m].
 _MEANT: Final = 0.002
 
@@ -73,6 +75,7 @@ def check(
     obstacles: Sequence[Obstacle],
     clearance: float = 0.0,
     floor: float = 0.0,
+    since: float = 0.0,
 ) -> Checked:
     """Whether hand, fingers, links and what is held touch nothing but what they mean to.
 
@@ -80,6 +83,7 @@ def check(
         scene: the blocks before the trajectory; None: nobody knows where they are.
         clearance: gap that counts as free [m]; what is nearer at the start may stay so.
         floor: height of the table [m].
+        since: what is before this time of the trajectory is not looked at [s].
     """
     blocks = {block.name: block for stack in (scene.stacks if scene else ()) for block in stack}
     around = _uprights(obstacles)
@@ -103,6 +107,9 @@ def check(
                 blocks[block.name] = replace(block, position_world=(x, y, z), yaw=yaw)
                 hold = None
             continue
+        if interval.end - since < _OVER:
+            continue
+        interval = replace(interval, start=max(interval.start, since))
         others = _joined(_upright_blocks(list(blocks.values())), around)
         way = _WayCheck(model, trajectory, interval, others, floor, hold, {*blocks, TABLE})
         found, contact = way.run(clearance)

@@ -50,6 +50,8 @@ class InfeasibleError(MotionError):
         move: index of the move; the number of moves for the way home.
         phase: ``pick``, ``place`` or ``home``.
         excludes: ``taking``, ``putting``, ``moving`` or ``scene``; empty: nobody has found out.
+        suggestion: the smallest change with which it can be, checked; empty: nobody was asked, or
+            none was found.
     """
 
     def __init__(
@@ -70,6 +72,7 @@ class InfeasibleError(MotionError):
         self.violation = violation
         self.move = move
         self.phase = phase
+        self.suggestion = ""
         what = f"{phase} of {object_name}" if object_name else f"way {phase or 'home'}"
         super().__init__(
             f"the {bound} problem of the {what} (move {move}) has no solution: "

@@ -96,7 +96,7 @@ def expand(
         phases.append(
             Phase(
                 *(PICK, index, block.name, pick, start, tool, scene.columns, holding.finger),
-                *(grasp, count),
+                *(grasp, count, choice.grasp),
             )
         )
         scene = scene.without_top(source)
@@ -111,7 +111,7 @@ def expand(
         phases.append(
             Phase(
                 *(PLACE, index, block.name, start, pick, holding, scene.columns, travel),
-                *(grasp, count),
+                *(grasp, count, choice.grasp),
             )
         )
         scene = scene.with_top(target, after)

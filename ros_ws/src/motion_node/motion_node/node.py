@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import threading
 import time
 import traceback
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -25,15 +27,18 @@ from tamp_runtime.presence import Presence
 from tamp_runtime.qos import LATCHED, RELIABLE, SENSOR_DATA, STATUS
 from tamp_runtime.stream_thread import StreamThread
 from trajectory_msgs.msg import JointTrajectory
+from visualization_msgs.msg import MarkerArray
 
+from .certificate import Suggestions
 from .conversions import (
     joint_positions,
+    obstacles_from_markers,
     plan_from_message,
     trajectory_to_message,
     trajectory_to_two_messages,
 )
-from .errors import JointStateError, MotionError
-from .execution.arm_state import ArmStateBox
+from .errors import InfeasibleError, JointStateError, MotionError
+from .execution.arm_state import ArmState, ArmStateBox
 from .execution.condition import Condition
 from .execution.executive import Executive
 from .execution.follow import Follower
@@ -41,7 +46,7 @@ from .execution.plan import Plan
 from .execution.settings import ExecutionSettings
 from .execution.worker import PlanWorker
 from .frames import check_frame
-from .obstacles import read_obstacles
+from .obstacles import Obstacle, read_obstacles
 from .parameters import (
     PARAMETERS,
     chosen_arm,
@@ -50,6 +55,7 @@ from .parameters import (
     timing_settings,
 )
 from .planner import MotionPlanner
+from .surroundings import Planners, Surroundings
 from .timing.trajectory import Trajectory
 
 #: Numbers of stacks and of moves for which the problems are built before they are asked for.
@@ -66,6 +72,9 @@ class MotionNode(Node):
             before this node started are ignored.
         joint_states (sensor_msgs/JointState)
         robot_description (std_msgs/String, latched): URDF
+        obstacles (visualization_msgs/MarkerArray, latched): what stands around besides blocks, as
+            RViz takes it; see :func:`obstacles_from_markers`. Plans keep clear of it from now on; a
+            motion under way that it is in the way of is stopped
         diagnostics (diagnostic_msgs/DiagnosticArray): who lives; with two nodes that do the work
             of one, plans are refused with the reason CONFLICT
     Publishes:
@@ -87,10 +96,12 @@ class MotionNode(Node):
         super().__init__("motion_node", **kwargs)
         self._values = declare_parameters(self, PARAMETERS, self._parameters_changed)
         self._arm = chosen_arm(self._values)
-        self._obstacles = read_obstacles(self._values["obstacles"])
+        self._around = Surroundings(read_obstacles(self._values["obstacles"]))
+        self._planners = Planners(self._around)
         self._states = ArmStateBox()
-        self._planner: MotionPlanner | None = None
         self._description = ""
+        self._early: list[MarkerArray] = []
+        self._hearing = threading.Lock()
 
         self._trajectories = self.create_publisher(JointTrajectory, "joint_trajectory", RELIABLE)
         self._gripper: Publisher | None = None
@@ -104,29 +115,36 @@ class MotionNode(Node):
             lambda: follower.grip,
             np.array(self._arm.home),
             self._arm.gripper.finger_travel,
-            lambda q: self._planner.model.tool_at(q) if self._planner else None,
+            lambda q: planner.model.tool_at(q) if (planner := self._planners.any) else None,
             lambda: self._settings().monitor.goal_tolerance,
         )
         executive = Executive(
-            lambda: self._planner,
+            self._planners.now,
             self._states,
             follower,
             condition,
             self._settings,
             self._presence.conflict,
             self._check_frame,
+            self._suggest,
+            lambda plan, motion, at: self._planners.in_the_way(motion, plan.graph, at),
         )
         self._worker = PlanWorker(
             executive, condition, self._publish, self._on_defect, self._presence.conflict
         )
         plans = MutuallyExclusiveCallbackGroup()
-        descriptions = MutuallyExclusiveCallbackGroup()  # problems are built there for seconds
+        obstacles = MutuallyExclusiveCallbackGroup()
+        building = MutuallyExclusiveCallbackGroup()  # of problems, for seconds
         self._joint_states = StreamThread.subscribe(
             self, JointState, "joint_states", self._on_joint_state, SENSOR_DATA
         )
         self.create_subscription(
-            String, "robot_description", self._on_description, LATCHED, callback_group=descriptions
+            String, "robot_description", self._on_description, LATCHED, callback_group=building
         )
+        self.create_subscription(
+            MarkerArray, "obstacles", self._on_obstacles, LATCHED, callback_group=obstacles
+        )
+        self._building = self.create_guard_condition(self._build, callback_group=building)
         with_info: Any = self._on_plan  # rclpy passes the message's times to a second argument
         self.create_subscription(
             SymbolicPlan, "symbolic_plan", with_info, LATCHED, callback_group=plans
@@ -154,8 +172,8 @@ class MotionNode(Node):
 
     def _parameters_changed(self, values: dict[str, Any]) -> None:
         self._values = {**self._values, **values}
-        if self._planner:
-            self._planner.timing = timing_settings(self._values)
+        for planner in self._planners.all:
+            planner.timing = timing_settings(self._values)
 
     def _on_joint_state(self, message: JointState) -> None:
         try:
@@ -171,22 +189,52 @@ class MotionNode(Node):
         if message.data == self._description:
             return
         self._description = message.data
-        try:
-            planner = MotionPlanner(
-                message.data,
-                self._arm,
-                planner_settings(self._values),
-                obstacles=self._obstacles,
-            )
+
+        def make(obstacles: Sequence[Obstacle]) -> MotionPlanner:
+            settings = planner_settings(self._values)
+            planner = MotionPlanner(message.data, self._arm, settings, obstacles=obstacles)
             planner.prepare(PREPARED_STACKS)
+            return planner
+
+        try:
+            planner = self._planners.describe(make)
         except MotionError as error:
             self.get_logger().error(f"robot_description cannot be used: {error}")
             return
-        self._planner = planner
-        planner.timing = timing_settings(self._values)  # it may have been changed meanwhile
         self.get_logger().info("ready for plans")
+        with self._hearing:
+            early, self._early = self._early, []
+            for heard in early:
+                self._hear_obstacles(heard)
+        self._prepare(planner)
+
+    def _prepare(self, planner: MotionPlanner) -> None:
+        planner.timing = timing_settings(self._values)  # it may have been changed meanwhile
         for moves in range(1, PREPARED_MOVES + 1):
+            if self._planners.wanting:
+                return
             planner.prepare(PREPARED_STACKS, moves)
+
+    def _build(self) -> None:
+        if (planner := self._planners.build()) is not None:
+            self._prepare(planner)
+
+    def _on_obstacles(self, message: MarkerArray) -> None:
+        with self._hearing:
+            if self._planners.any is None:  # in which frame the arm is is not known yet
+                self._early.append(message)
+            else:
+                self._hear_obstacles(message)
+
+    def _hear_obstacles(self, message: MarkerArray) -> None:
+        if self._around.hear(
+            lambda known: obstacles_from_markers(message, known, self._check_obstacles_frame)
+        ):
+            self.get_logger().info(f"{len(self._around.all)} obstacles are kept clear of")
+        else:
+            self.get_logger().warning(f"obstacles are refused: {self._around.problem}")
+        self._building.trigger()
+        self._worker.beat()
 
     def _on_plan(self, message: SymbolicPlan, info: dict[str, Any]) -> None:
         published = int(info.get("source_timestamp", 0))
@@ -221,9 +269,28 @@ class MotionNode(Node):
         return ""
 
     def _check_frame(self, plan: Plan) -> None:
-        assert self._planner is not None
-        root = self._planner.model.kinematics.root
-        check_frame(plan.frame, root, self._values["world_frame"])
+        check_frame(plan.frame, self._root, self._values["world_frame"])
+
+    def _check_obstacles_frame(self, frame: str) -> None:
+        check_frame(frame, self._root, self._values["world_frame"], "the obstacles")
+
+    @property
+    def _root(self) -> str:
+        planner = self._planners.any
+        return planner.model.kinematics.root if planner else self._values["world_frame"]
+
+    def _suggest(
+        self,
+        plan: Plan,
+        state: ArmState,
+        error: InfeasibleError,
+        stopped: Callable[[], bool],
+    ) -> str:
+        planner = self._planners.now()
+        assert planner is not None
+        arm, fingers = state.positions.arm, state.positions.fingers
+        found = Suggestions(planner).suggest(plan.graph, plan.moves, arm, fingers, error, stopped)
+        return found.words if found else ""
 
     def _publish(self, report: MotionReport) -> None:
         if not self.context.ok():
@@ -232,6 +299,7 @@ class MotionNode(Node):
             self.get_logger().warning(f"plan {report.plan_id!r} failed: {report.message}")
         elif report.message:
             self.get_logger().debug(f"plan {report.plan_id!r}: {report.message}")
+        report = self._around.told_in(report)
         self._statuses.publish(report_to_message(report, self.get_clock().now().to_msg()))
 
     def _on_defect(self, plan_id: str) -> None:

@@ -18,7 +18,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
 import yaml
+from numpy.typing import NDArray
 
 from scene_graph import BOX, CYLINDER, PRISM, SPHERE
 
@@ -37,13 +39,22 @@ MOST: Final = 30
 #: Sizes and distances from the arm's base that make sense [m].
 _SIZES: Final = (0.001, 2.0)
 _FARTHEST: Final = 3.0
+#: An axis this near to vertical is.
+_UPRIGHT: Final = 1 - 1e-6
 #: Keys of a scene's obstacles that say nothing about where they are.
 _UNUSED: Final = ("color", "mass", "friction")
 _KEYS: Final = ("name", "shape", "size", "position", "yaw", *_UNUSED)
 
 
 class ObstacleError(MotionError):
-    """A file of obstacles cannot be used; the sentence names the file and the key."""
+    """Obstacles cannot be used; the sentence names the file or the marker, and the key.
+
+    ``frame``: whether it is because of their frame; ``number``: because there are too many.
+    """
+
+    def __init__(self, message: str, frame: bool = False, number: bool = False) -> None:
+        super().__init__(message)
+        self.frame, self.number = frame, number
 
 
 @dataclass(frozen=True)
@@ -141,6 +152,54 @@ def _obstacle(data: object, key: str) -> list[Obstacle]:
     z = rest[0] if rest else size[2] / 2
     whole = Obstacle(name, (size[0], size[1], size[2]), (x, y, z), yaw, shape in ROUND)
     return _tray(whole) if shape == TRAY else [whole]
+
+
+def upright_box(
+    name: str, size: Vector, position_world: Vector, rotation: NDArray[np.float64]
+) -> Obstacle:
+    """The upright box around a box however it is turned, itself if it stands upright.
+
+    Args:
+        rotation: its axes in world, one a column, shape (3, 3).
+    """
+    level = np.hypot(rotation[0], rotation[1]) * size
+    longest = int(np.argmax(level))
+    yaw = float(np.arctan2(rotation[1, longest], rotation[0, longest]))
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    own = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ rotation
+    x, y, z = (float(extent) for extent in np.abs(own) @ np.array(size))
+    return Obstacle(name, (x, y, z), position_world, yaw)
+
+
+def upright_cylinder(
+    name: str, size: Vector, position_world: Vector, rotation: NDArray[np.float64]
+) -> Obstacle:
+    """A cylinder about its third axis: itself if it stands upright, else the box around it."""
+    if abs(rotation[2, 2]) > _UPRIGHT and size[0] == size[1]:
+        return Obstacle(name, size, position_world, 0.0, round=True)
+    return upright_box(name, size, position_world, rotation)
+
+
+def capsule(name: str, ends_world: tuple[Vector, Vector], radius: float) -> Obstacle:
+    """The upright cylinder or box around all that is within a radius of a line [m]."""
+    first, second = np.array(ends_world[0]), np.array(ends_world[1])
+    x, y, z = (float(value) for value in (first + second) / 2)
+    way = second - first
+    level, rise = float(np.hypot(way[0], way[1])), abs(float(way[2]))
+    size = (level + 2 * radius, 2 * radius, rise + 2 * radius)
+    yaw = float(np.arctan2(way[1], way[0]))
+    return Obstacle(name, size, (x, y, z), yaw, round=level == 0.0)
+
+
+def within_range(item: Obstacle, key: str) -> Obstacle:
+    """The obstacle, if its numbers make sense.
+
+    Raises:
+        ObstacleError: as for those of a file; the sentence begins with ``key``.
+    """
+    _numbers(item.size, f"{key}.size", (3,), *_SIZES)
+    _numbers(item.position_world, f"{key}.position", (3,), -_FARTHEST, _FARTHEST)
+    return item
 
 
 def _numbers(

@@ -69,6 +69,7 @@ class Phase:
         grip: finger position commanded after the switch [m].
         grasp: how the block is taken; None for ``home``.
         grasps: how many ways to take it there are.
+        choice: which of these it is.
     """
 
     kind: str
@@ -81,6 +82,7 @@ class Phase:
     grip: float
     grasp: Grasp | None = None
     grasps: int = 1
+    choice: int = 0
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from itertools import pairwise
 
@@ -114,7 +115,7 @@ class MotionPlanner:
         if stacks not in self._bounds:
             problems = SwitchProblems(self.model, stacks, self.constraints, self._solver)
             path = self.path_problem(stacks)
-            keyframes = Keyframes(problems, self.inverse, bool(self.obstacles))
+            keyframes = Keyframes(problems, self.inverse)
             self._bounds[stacks] = (keyframes, path)
         keyframes, path = self._bounds[stacks]
         if moves:
@@ -180,13 +181,20 @@ class MotionPlanner:
             names = object_names if own is scene else ()
             return expand(own, some, gripper, settings.phases, settings.squeeze, names, choices)
 
-        def solve(phases: Sequence[Phase], own: Scene, at_home: bool) -> Motion:
+        def solve(
+            phases: Sequence[Phase], own: Scene, at_home: bool, sampled: bool = True
+        ) -> Motion:
             start = self.model.home if at_home else arm
-            return self._solve(phases, scene.floor, start, fingers, cancelled, begin, scene=own)
+            return self._solve(
+                *(phases, scene.floor, start, fingers, cancelled, begin),
+                scene=own,
+                sampled=sampled,
+            )
 
         try:
             if not self.obstacles:
-                return solve(phases_for(scene, moves, ()), scene, False)
+                with suppress(InfeasibleError):  # other grasps are tried only then
+                    return solve(phases_for(scene, moves, ()), scene, False, sampled=False)
             return solve_choosing(
                 *(scene, moves, phases_for, solve),
                 lambda move: only_for(scene, moves, move, gripper, settings.phases),
@@ -266,6 +274,7 @@ class MotionPlanner:
         begin: float = 0.0,
         opening: bool = True,
         scene: Scene | None = None,
+        sampled: bool = False,
     ) -> Motion:
         def check() -> None:
             if cancelled():
@@ -276,7 +285,7 @@ class MotionPlanner:
         keyframes, problem = self.prepare(len(phases[0].columns))
         clear = Clearances(self.settings.path.margin, floor)
         switching = [phase for phase in phases if phase.kind != HOME]
-        configurations = [arm, *keyframes.solve(arm, switching, clear), self.model.home]
+        configurations = [arm, *keyframes.solve(arm, switching, clear, sampled), self.model.home]
         ends = list(pairwise(configurations))
         guesses = problem.guesses(phases, configurations, clear)
 

@@ -56,11 +56,12 @@ def refined(
             try:
                 paths[index] = solve(index, own[index])
             except InfeasibleError as error:
-                raise _objection(contact) from error
-    raise _objection(checked.contacts[0])
+                raise objection(contact) from error
+    raise objection(checked.contacts[0])
 
 
-def _objection(contact: Contact) -> InfeasibleError:
+def objection(contact: Contact) -> InfeasibleError:
+    """What the check found, as the verdict of a bound."""
     phase: Phase = contact.phase
     return InfeasibleError(
         PATH,

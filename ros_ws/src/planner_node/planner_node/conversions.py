@@ -62,6 +62,7 @@ def plan_to_message(plan: Plan) -> SymbolicPlan:
         initial=scene_to_message(plan.scene),
         moves=moves_to_messages(plan.moves, plan.states),
         goal=relations_to_messages(plan.goal.fulfilled_by(plan.states[-1])),
+        explain=plan.explain,
     )
 
 

@@ -37,6 +37,16 @@ class MotionReason(IntEnum):
     TIMEOUT = 7
     INTERNAL_ERROR = 8
     CONFLICT = 9
+    OBSTRUCTED = 10
+
+
+class ObstaclesHeard(IntEnum):
+    """What became of the newest message on obstacles, with the numbers of MotionStatus."""
+
+    TAKEN = 0
+    INVALID = 1
+    UNKNOWN_FRAME = 2
+    TOO_MANY = 3
 
 
 class ArmPlace(IntEnum):
@@ -89,3 +99,7 @@ class MotionReport:
     hand: tuple[float, float, float] = (0.0, 0.0, 0.0)
     violation: float = 0.0
     excludes: str = ""
+    suggestion: str = ""
+    obstacles: int = 0
+    obstacles_heard: ObstaclesHeard = ObstaclesHeard.TAKEN
+    obstacles_problem: str = ""

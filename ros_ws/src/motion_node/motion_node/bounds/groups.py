@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..constraints import AlongPath, AtSwitch, Constraint
 from ..errors import InfeasibleError
-from ..nlp import Demand, JoinedRows
+from ..nlp import TOLERANCE, Demand, JoinedRows
 from ..phases import Phase
 from ..robots.model import ArmModel
 
@@ -81,6 +81,14 @@ class Group:
         at_start = np.array(self.rows.value(start_q, demand.parameters[0])).ravel()
         parts = zip(self.constraints, demands, self._joined.split(at_start))
         return self._side_by_side([own.relaxed(asked, rows, way) for own, asked, rows in parts])
+
+    def missed(self, violations: Array, phase: Phase) -> list[str]:
+        """The rows in words that count as violated anywhere, of violations (steps, rows)."""
+        found = []
+        for constraint, share in zip(self.constraints, self._joined.split(violations)):
+            names = constraint.row_names(phase)
+            found += [names[int(row)] for row in np.flatnonzero(share.max(axis=0) > TOLERANCE)]
+        return found
 
     def worst(self, violations: Array) -> Violation:
         """Of violations (steps, rows)."""

@@ -22,20 +22,21 @@ Array = NDArray[np.float64]
 class Keyframes:
     """Solves P1 for each switch, then P2 from there."""
 
-    def __init__(
-        self, problems: SwitchProblems, inverse: InverseKinematics, obstacles: bool = False
-    ) -> None:
-        """``obstacles``: whether there is more around than blocks."""
+    def __init__(self, problems: SwitchProblems, inverse: InverseKinematics) -> None:
         self.problems = problems
-        self._poses = Poses(problems, inverse)
-        self._among, self._obstacles = PosesAmongObstacles(problems, inverse), obstacles
+        self.poses = Poses(problems, inverse)
+        self._among = PosesAmongObstacles(problems, inverse)
 
-    def solve(self, start: Array, phases: Sequence[Phase], clear: Clearances) -> Array:
+    def solve(
+        self, start: Array, phases: Sequence[Phase], clear: Clearances, sampled: bool = False
+    ) -> Array:
         """Configurations at the switches of all phases but the way home, shape (k, n) [rad].
 
         Args:
             start: configuration before the first phase, shape (n,) [rad].
             phases: those that end with a switch.
+            sampled: whether P1 is refused as quickly as among obstacles, where there is a choice
+                of grasps to go on with.
 
         Raises:
             InfeasibleError: with bound ``pose`` where one switch alone has no solution, else with
@@ -44,17 +45,17 @@ class Keyframes:
         if not phases:
             return np.zeros((0, self.problems.model.dimension))
         demands = self.problems.demands(phases, clear)
-        if self._obstacles:
+        if sampled:
             poses = self._among.solve_all(phases, clear)
             solution = self.problems.solve(start, poses, demands, thorough=False)
             # No constraint reaches from switch to switch: the poses are a solution, too.
             return solution.x[1:-1] if solution.feasible else np.array(poses)
         try:
-            poses = self._poses.solve(phases, demands)
+            poses = self.poses.solve(phases, demands)
         except InfeasibleError as error:
             for phase in phases:
                 if (phase.move, phase.kind) == (error.move, error.phase):
-                    error.excludes = self._among.excludes(phase, clear)
+                    raise self._among.verdict(phase, clear) from error
             raise
         solution = self.problems.solve(start, poses, demands)
         if solution.feasible:

@@ -95,10 +95,14 @@ class PathProblem:
         return guesses(ways, self._inverse, *_TRIES[0])
 
     def _ways(
-        self, phases: Sequence[Phase], configurations: Sequence[Array], clear: Clearances
+        self,
+        phases: Sequence[Phase],
+        configurations: Sequence[Array],
+        clear: Clearances,
+        moving: bool = False,
     ) -> list[Way]:
         return [
-            Way(self._model, self._settings, phase, start, goal, clear)
+            Way(self._model, self._settings, phase, start, goal, clear, moving)
             for phase, start, goal in zip(phases, configurations, configurations[1:])
         ]
 
@@ -108,6 +112,7 @@ class PathProblem:
         configurations: Sequence[Array],
         clear: Clearances,
         first: Sequence[Array] = (),
+        second: Array | None = None,
     ) -> list[PhasePath]:
         """P3 for consecutive phases between given configurations at rest.
 
@@ -115,19 +120,20 @@ class PathProblem:
             phases: as many as the problem was built for.
             configurations: at their ends, one more than phases, each of shape (n,) [rad].
             first: what ``guesses`` found, if it was asked.
+            second: the configuration after the first one, shape (n,) [rad], where the arm moves
+                already: both are the prefix of 3.4; None: it is at rest.
 
         Raises:
             InfeasibleError: with bound ``path``, naming the constraint that is violated most.
         """
-        model, settings = self._model, self._settings
-        ways = self._ways(phases, configurations, clear)
-        demands = [
-            Demand.after_one_another([group.along_path(way.along, way.start_q) for way in ways])
-            for _, group in self._groups
-        ]
-        # Where the measured start is a little outside its limits, it may come back in its own time.
-        lower = np.minimum(model.lower, configurations[0])
-        upper = np.maximum(model.upper, configurations[0])
+        settings = self._settings
+        ways = self._ways(phases, configurations, clear, moving=second is not None)
+        demands = self._demands(ways)
+        lower, upper = self._limits(configurations)
+        if second is not None:
+            shape = (len(phases) * settings.steps + 1, 1)
+            lower, upper = np.tile(lower, shape), np.tile(upper, shape)
+            lower[1] = upper[1] = second
         attempts: list[Solution] = []
         for x, thorough in self._starts(ways, demands, first):
             solution = self._problem.solve(x, demands, lower, upper, thorough)
@@ -139,6 +145,53 @@ class PathProblem:
                 ]
             attempts.append(solution)
         raise self._error(phases, min(attempts, key=lambda item: item.violation))
+
+    def demands(self, phase: Phase, ends: Sequence[Array], clear: Clearances) -> list[Demand]:
+        """What is asked of one phase between two configurations."""
+        return self._demands(self._ways([phase], ends, clear))
+
+    def _demands(self, ways: Sequence[Way]) -> list[Demand]:
+        return [
+            Demand.after_one_another([group.along_path(way.along, way.start_q) for way in ways])
+            for _, group in self._groups
+        ]
+
+    def _limits(self, configurations: Sequence[Array]) -> tuple[Array, Array]:
+        # Where the measured start is a little outside its limits, it may come back in its own time.
+        model = self._model
+        return np.minimum(model.lower, configurations[0]), np.maximum(
+            model.upper, configurations[0]
+        )
+
+    def straight_starts(
+        self, phase: Phase, ends: Sequence[Array], clear: Clearances
+    ) -> Iterator[Array]:
+        """Starting points over the stacks, whatever else stands around."""
+        ways = self._ways([phase], ends, clear)
+        for attempt in _TRIES:
+            yield guesses(ways, self._inverse, *attempt)[0]
+
+    def missed(self, x: Array, demands: Sequence[Demand], phase: Phase) -> list[str]:
+        """What a path (steps + 1, n) misses, each row in words."""
+        found = []
+        for (_, group), missed in zip(self._groups, self._excess(x, demands)):
+            found += group.missed(missed, phase)
+        return found
+
+    def least_changes(
+        self,
+        start: Array,
+        demands: Sequence[Demand],
+        unit: float,
+        changed: Sequence[Sequence[Demand]],
+        reach: tuple[Array, Array],
+    ) -> Array | None:
+        """What has to change least for one phase to have a path near a starting point.
+
+        See :meth:`KOrderProblem.least_changes`.
+        """
+        limits = self._limits([start[0]])
+        return self._problem.least_changes(start, demands, unit, changed, reach, limits)
 
     def _starts(
         self, ways: Sequence[Way], demands: Sequence[Demand], first: Sequence[Array]
@@ -163,13 +216,14 @@ class PathProblem:
 
     def _missed(self, x: Array, demands: Sequence[Demand]) -> float:
         """By how much a starting point misses what is asked most [m or rad]."""
-        found = []
+        return max((float(m.max(initial=0.0)) for m in self._excess(x, demands)), default=0.0)
+
+    def _excess(self, x: Array, demands: Sequence[Demand]) -> Iterator[Array]:
         for (steps, group), demand in zip(self._groups, demands):
             at = [k + s for k in range(0, len(x) - 1, self._settings.steps) for s in steps]
             q = (x[np.floor(at).astype(int)] + x[np.ceil(at).astype(int)]) / 2
             values = np.array(group.rows.value(q.T, demand.parameters.T)).T
-            found.append(float(demand.excess(values).max(initial=0.0)))
-        return max(found, default=0.0)
+            yield demand.excess(values)
 
     def _error(self, phases: Sequence[Phase], solution: Solution) -> InfeasibleError:
         found = [

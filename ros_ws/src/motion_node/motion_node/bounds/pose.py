@@ -67,7 +67,7 @@ class Poses:
         """
         return [
             self._solve_one(phase, [demand.at([index]) for demand in demands], own)
-            for index, (phase, own) in enumerate(zip(phases, self._guesses(phases, demands)))
+            for index, (phase, own) in enumerate(zip(phases, self.guesses(phases, demands)))
         ]
 
     def _solve_one(
@@ -84,7 +84,7 @@ class Poses:
         least = min(failed, key=lambda item: item.violation)
         raise self._problems.error(POSE, least, [phase])
 
-    def _guesses(self, phases: Sequence[Phase], demands: Sequence[Demand]) -> list[list[Guess]]:
+    def guesses(self, phases: Sequence[Phase], demands: Sequence[Demand]) -> list[list[Guess]]:
         """Configurations near the rest posture turned towards each switch, the best one first.
 
         The arm may have a joint more than a pose asks for. Beside a tall stack the forearm has to

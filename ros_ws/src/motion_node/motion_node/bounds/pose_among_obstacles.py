@@ -41,7 +41,7 @@ class PosesAmongObstacles(Poses):
         """
         demands = self._problems.demands(phases, clear)
         found = []
-        for index, (phase, own) in enumerate(zip(phases, self._guesses(phases, demands))):
+        for index, (phase, own) in enumerate(zip(phases, self.guesses(phases, demands))):
             here = [demand.at([index]) for demand in demands]
             q = self._try(own, here)
             if q is None:
@@ -49,10 +49,10 @@ class PosesAmongObstacles(Poses):
             found.append(q)
         return found
 
-    def excludes(self, phase: Phase, clear: Clearances) -> str:
-        """How much is excluded where P1 was found to have no solution for a phase."""
+    def verdict(self, phase: Phase, clear: Clearances) -> InfeasibleError:
+        """Why, where P1 was found to have no solution for a phase."""
         demands = self._problems.demands([phase], clear)
-        return self._verdict(phase, self._guesses([phase], demands)[0], demands, clear).excludes
+        return self._verdict(phase, self.guesses([phase], demands)[0], demands, clear)
 
     def _try(self, guesses: Sequence[Guess], demands: Sequence[Demand]) -> Array | None:
         if guesses[0].score == 0.0:
@@ -78,11 +78,13 @@ class PosesAmongObstacles(Poses):
         missed = np.linalg.norm(self._inverse.residual(q, position), axis=1)
         fixed = TAKING if phase.kind == PICK else PUTTING
         if missed.min() > _THERE:
+            q = self._inverse.moved(q, np.tile(position, (len(q), 1)))
+            missed = np.linalg.norm(self._inverse.residual(q, position), axis=1)
             x, y, z = phase.switch.position_world
             place = f"({x:.2f}, {y:.2f}, {z:.2f}) at stack{phase.switch.stack}"
             return InfeasibleError(
                 POSE,
-                f"reach of the hand to {place}",
+                f"reach of the hand to {place}{self._at_limits(q[missed.argmin()])}",
                 object_name=phase.object_name,
                 violation=float(missed.min()),
                 move=phase.move,
@@ -98,9 +100,16 @@ class PosesAmongObstacles(Poses):
         error.excludes = SCENE
         alone = replace(phase, columns=_alone(phase, clear))
         demands = self._problems.demands([alone], clear)
-        if self._try(self._guesses([alone], demands)[0], demands) is None:
+        if self._try(self.guesses([alone], demands)[0], demands) is None:
             error.excludes = fixed
         return error
+
+    def _at_limits(self, q: Array) -> str:
+        """Which joints of a configuration (n,) are as far as they go, to end a sentence."""
+        model = self._problems.model
+        end = np.isclose(q, model.lower, atol=1e-3) | np.isclose(q, model.upper, atol=1e-3)
+        names = [name for name, there in zip(model.arm.arm_joints, end) if there]
+        return f", with {' and '.join(names)} at the limit" if names else ""
 
 
 def _alone(phase: Phase, clear: Clearances) -> tuple[Column, ...]:

@@ -112,6 +112,36 @@ class SwitchProblems:
             found.append(group.worst(np.where(group.compared, demand.excess(values), 0.0)))
         return max(found, key=lambda violation: violation.amount)
 
+    def missed(self, q: Array, demands: Sequence[Demand], phase: Phase) -> list[str]:
+        """What a configuration (n,) misses but for the hand's pose, each row in words.
+
+        Args:
+            demands: of the phase's switch.
+        """
+        found = []
+        for group, demand in zip(self._groups, demands):
+            values = np.array(group.rows.value(q, demand.parameters[0])).reshape(1, -1)
+            missed = np.where(group.compared, demand.excess(values), 0.0)
+            found += group.missed(missed, phase)
+        return found
+
+    def least_changes(
+        self,
+        guess: Array,
+        demands: Sequence[Demand],
+        unit: float,
+        changed: Sequence[Sequence[Demand]],
+        reach: tuple[Array, Array],
+    ) -> Array | None:
+        """What has to change least for one switch to have a configuration near a guess (n,).
+
+        See :meth:`KOrderProblem.least_changes`.
+        """
+        model = self.model
+        x = np.vstack([model.home, guess, model.home])
+        limits = (model.lower, model.upper)
+        return self.problem(1).least_changes(x, demands, unit, changed, reach, limits)
+
     def error(self, bound: str, solution: Solution, phases: Sequence[Phase]) -> InfeasibleError:
         """Names the constraint that a solution violates most."""
         found = [group.worst(own) for group, own in zip(self._groups, solution.violations)]

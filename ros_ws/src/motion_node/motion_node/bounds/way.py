@@ -53,6 +53,7 @@ class Way:
 
     Args:
         start, goal: configurations at its ends, shape (n,) [rad].
+        moving: whether the arm is on its way already at the start, and need not rise first.
 
     Attributes:
         along: what constraints are told of it.
@@ -66,10 +67,11 @@ class Way:
         start: Array,
         goal: Array,
         clear: Clearances,
+        moving: bool = False,
     ) -> None:
         self._model, self._shape, self._phase, self._clear = model, shape, phase, clear
         self.start_q, self._goal_q = start, goal
-        first = self._start_end()
+        first = None if moving else self._start_end()
         last = self._switch_end(phase.switch) if phase.switch else None
         self.along = AlongPath(model.arm, phase, clear, shape, first, last)
 

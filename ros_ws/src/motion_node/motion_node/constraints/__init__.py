@@ -12,7 +12,7 @@ from ..robots import Arm
 from .constraint import Constraint
 from .hand_clearance import HandClearance
 from .link_clearance import LinkClearance
-from .obstacle_clearance import ObstacleClearance, capacity_for
+from .obstacle_clearance import CAPACITIES, ObstacleClearance, capacity_for
 from .situation import AlongPath, AtSwitch, Clearances, VerticalEnd, lowered
 from .switch_pose import SwitchPose
 from .table_clearance import TableClearance
@@ -33,6 +33,7 @@ def default_constraints(arm: Arm) -> tuple[Constraint, ...]:
 
 
 __all__ = [
+    "CAPACITIES",
     "AlongPath",
     "AtSwitch",
     "Clearances",

@@ -46,6 +46,7 @@ def findings(error: MotionError, moves: int) -> dict[str, Any]:
             "constraint": error.constraint,
             "violation": error.violation,
             "excludes": error.excludes,
+            "suggestion": error.suggestion,
             "move": min(error.move, max(moves - 1, 0)),
             "phase": error.phase,
         }

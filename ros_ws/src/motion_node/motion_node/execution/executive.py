@@ -16,11 +16,11 @@ from typing import Any, Final
 
 from tamp_runtime.motion_report import SOMETHING, MotionReason, MotionReport, MotionState
 
-from ..errors import CancelledError, MotionError
+from ..errors import CancelledError, InfeasibleError, MotionError
 from ..phases import HOME, PICK
 from ..planner import Motion
 from ..timing.trajectory import Trajectory
-from .arm_state import ArmStates
+from .arm_state import ArmState, ArmStates
 from .condition import REST_SECONDS, Condition
 from .errors import ClosedError, ExecutionError, findings
 from .follow import Follower
@@ -30,6 +30,9 @@ from .settings import ExecutionSettings
 
 #: How long an arm that has arrived may take to come to rest before that is said [s].
 _SETTLING_SECONDS: Final = 3.0
+
+#: Plan, state of the arm, why the plan was refused, whether to stop looking -> words.
+Suggest = Callable[[Plan, ArmState, InfeasibleError, Callable[[], bool]], str]
 
 
 class Executive:
@@ -43,6 +46,9 @@ class Executive:
         settings: asked for anew for each plan.
         conflict: why nothing may set out: somebody else does the same; empty: it may.
         check: raises InvalidPlanError for a plan that is not for this arm.
+        suggest: what would help a plan that was refused, in words; empty: nobody knows.
+        in_the_way: what has come into the rest of a motion's way, given the plan and the motion's
+            time; empty: nothing.
     """
 
     def __init__(
@@ -54,7 +60,10 @@ class Executive:
         settings: Callable[[], ExecutionSettings],
         conflict: Callable[[], str] = lambda: "",
         check: Callable[[Plan], None] = lambda _plan: None,
+        suggest: Suggest = lambda _plan, _state, _error, _stopped: "",
+        in_the_way: Callable[[Plan, Motion, float], str] = lambda _plan, _motion, _time: "",
     ) -> None:
+        self._suggest, self._in_the_way = suggest, in_the_way
         self._planner, self._arm, self._settings, self._check = planner, arm, settings, check
         self._follower, self._condition, self._conflict = follower, condition, conflict
         self._publish: Callable[[MotionReport], None] = lambda _report: None
@@ -107,19 +116,14 @@ class Executive:
         planner = self._wait_for_planner(stop.is_set)
         self._check(plan)
         state = self._follower.wait_for_rest(stop.is_set)
-        if state is not None and self._condition.held(state):
+        if state is not None and not plan.explain and self._condition.held(state):
             self._empty_hand(planner)
             state = self._follower.wait_for_rest(stop.is_set)
         if state is None:
             raise CancelledError("stopped on request before anything moved")
-        motion = planner.solve(
-            plan.graph,
-            plan.moves,
-            state.positions.arm,
-            state.positions.fingers,
-            plan.object_names,
-            lambda: stop.is_set() or self._arm.closed,
-        )
+        motion = self._motion_for(plan, planner, state, lambda: stop.is_set() or self._arm.closed)
+        if plan.explain:
+            raise CancelledError("the plan could be carried out; nothing was moved, as asked")
         if self._arm.closed:
             raise ClosedError("the node ends")
         self._check_conflict()
@@ -130,7 +134,19 @@ class Executive:
             optimisation_seconds=motion.seconds,
             duration=motion.trajectory.duration,
         )
-        self._run(motion, planner, stop)
+        self._run(plan, motion, planner, stop)
+
+    def _motion_for(
+        self, plan: Plan, planner: Planner, state: ArmState, stopped: Callable[[], bool]
+    ) -> Motion:
+        arm, fingers = state.positions.arm, state.positions.fingers
+        try:
+            return planner.solve(plan.graph, plan.moves, arm, fingers, plan.object_names, stopped)
+        except InfeasibleError as error:
+            if plan.explain:
+                self._tell(MotionState.OPTIMISING, f"{error}; looking for what would help")
+                error.suggestion = self._suggest(plan, state, error, stopped)
+            raise
 
     def _wait_for_planner(self, stopped: Callable[[], bool] = lambda: False) -> Planner:
         timeout = self._follower.settings.description_timeout
@@ -154,18 +170,28 @@ class Executive:
         if sentence:
             raise ExecutionError(MotionReason.CONFLICT, sentence)
 
-    def _run(self, motion: Motion, planner: Planner, stop: threading.Event) -> None:
+    def _run(self, plan: Plan, motion: Motion, planner: Planner, stop: threading.Event) -> None:
         follower = self._follower
+
+        def on_progress(trajectory: Trajectory, at: float) -> None:
+            self._tell_progress(trajectory, at)
+            if found := self._in_the_way(plan, motion, at):
+                sentence = f"{found}; the arm was stopped"
+                raise ExecutionError(MotionReason.OBSTRUCTED, sentence, recoverable=True)
+
         try:
             arrived = follower.follow(
                 motion.trajectory,
-                self._tell_progress,
+                on_progress,
                 lambda: stop.is_set() and follower.empty_handed,
             )
         except ExecutionError as error:
             if not error.recoverable:
                 raise
             try:
+                if error.reason is MotionReason.OBSTRUCTED:
+                    self._stop_moving()
+                    planner = self._wait_for_planner()  # among the obstacles of now
                 recovered = self._recover(motion, planner, str(error))
             except ExecutionError as second:
                 raise ExecutionError(error.reason, f"{error}; {second}") from error
@@ -199,13 +225,16 @@ class Executive:
             phase=HOME,
             object_name="",
         )
-        if follower.under_way:
+        self._stop_moving()
+        return self._bring_home(motion, planner, f"{why}; ", in_order=True)
+
+    def _stop_moving(self) -> None:
+        if self._follower.under_way:
             try:
-                follower.brake()
+                self._follower.brake()
             except ExecutionError as error:
                 if not error.recoverable:
                     raise
-        return self._bring_home(motion, planner, f"{why}; ", in_order=True)
 
     def _tidy(self) -> None:
         """Brings an arm home that no plan moves: it was left somewhere, or holds something."""

@@ -19,6 +19,7 @@ class Plan:
 
     Attributes:
         frame: the frame of all its poses; empty: it does not say.
+        explain: nothing is to move; it is only asked whether it could, and if not, what would help.
     """
 
     plan_id: str
@@ -26,6 +27,7 @@ class Plan:
     moves: tuple[Move, ...]
     object_names: tuple[str, ...]
     frame: str = ""
+    explain: bool = False
 
 
 class Planner(WaysHome, Protocol):

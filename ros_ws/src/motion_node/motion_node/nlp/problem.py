@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .compiled import compiled
+from .elastic import Elastic, Slopes
 from .program import TOLERANCE, Instance, Program
 from .rows import Demand, Rows
 from .solver import SolverFactory, quickest
@@ -111,7 +112,9 @@ class KOrderProblem:
         self._hessian = full[np.ix_(free, free)]
         self._coupling = full[np.ix_(free, fixed_rows)]
         self._constant = full[np.ix_(fixed_rows, fixed_rows)]
-        self._solver = solver(self._program())
+        self._made = self._program()
+        self._solver = solver(self._made)
+        self._elastic: dict[int, Elastic] = {}
 
     def _unknowns(self, steps: NDArray[np.int_]) -> NDArray[np.int_]:
         return (steps[:, None] * self.dimension + np.arange(self.dimension)).ravel()
@@ -194,17 +197,8 @@ class KOrderProblem:
             lower, upper: joint limits, broadcast to (steps, n) [rad].
             thorough: whether, of several solvers in turn, those behind the first one are asked.
         """
-        shape = (self.steps, self.dimension)
+        instance = self._instance(x, demands, lower, upper)
         given = x[self.fixed].ravel()
-        instance = Instance(
-            start=np.clip(x, lower, upper)[self.free].ravel(),
-            linear=self._coupling @ given,
-            parameters=_flat([demand.parameters for demand in demands]),
-            lower_z=np.broadcast_to(lower, shape)[self.free].ravel(),
-            upper_z=np.broadcast_to(upper, shape)[self.free].ravel(),
-            lower_g=_flat([demand.lower for demand in demands]),
-            upper_g=_flat([demand.upper for demand in demands]),
-        )
         solver = self._solver if thorough else quickest(self._solver)
         found = solver.solve(instance)
         z = found.z
@@ -220,6 +214,61 @@ class KOrderProblem:
             solver=found.solver,
             iterations=found.iterations,
         )
+
+    def _instance(
+        self, x: Array, demands: Sequence[Demand], lower: Array, upper: Array
+    ) -> Instance:
+        shape = (self.steps, self.dimension)
+        return Instance(
+            start=np.clip(x, lower, upper)[self.free].ravel(),
+            linear=self._coupling @ x[self.fixed].ravel(),
+            parameters=_flat([demand.parameters for demand in demands]),
+            lower_z=np.broadcast_to(lower, shape)[self.free].ravel(),
+            upper_z=np.broadcast_to(upper, shape)[self.free].ravel(),
+            lower_g=_flat([demand.lower for demand in demands]),
+            upper_g=_flat([demand.upper for demand in demands]),
+        )
+
+    def least_changes(
+        self,
+        x: Array,
+        demands: Sequence[Demand],
+        unit: float,
+        changed: Sequence[Sequence[Demand]],
+        reach: tuple[Array, Array],
+        limits: tuple[Array, Array],
+    ) -> Array | None:
+        """The smallest changes of what is asked with which there is a solution.
+
+        Args:
+            x: as for :meth:`solve`.
+            changed: the demands after each change by ``unit`` alone.
+            reach: how far each change may go down and up, in the unit's unit, shape (changes,).
+            limits: of the joints, as for :meth:`solve`.
+
+        Returns:
+            The changes, shape (changes,); None if no solution was found with any.
+        """
+        if len(changed) not in self._elastic:
+            self._elastic[len(changed)] = Elastic(self._made, len(changed))
+        instance = self._instance(x, demands, *limits)
+        others = [self._instance(x, own, *limits) for own in changed]
+        finite = np.isfinite(instance.lower_g)
+        bound = np.where(finite, instance.lower_g, instance.upper_g)
+        bounds = [np.where(finite, own.lower_g, own.upper_g) for own in others]
+        fixed = ~np.isfinite(bound)
+        slopes = Slopes(
+            np.column_stack([(o.parameters - instance.parameters) / unit for o in others]),
+            np.column_stack([np.where(fixed, 0.0, _less(o, bound)) / unit for o in bounds]),
+            *reach,
+        )
+        return self._elastic[len(changed)].solve(instance, slopes)
+
+
+def _less(value: Array, other: Array) -> Array:
+    """The difference; that of infinite ones is 0."""
+    with np.errstate(invalid="ignore"):
+        return np.nan_to_num(value - other, nan=0.0)
 
 
 def _flat(arrays: Sequence[Array]) -> Array:

@@ -24,6 +24,12 @@ Array = NDArray[np.float64]
 SHORTEST: Final = 0.05
 #: Coefficients this small do not bound anything; keeps divisions finite.
 _TINY: Final = 1e-9
+#: An arm that moves no faster stands still [rad/s].
+_STANDING: Final = 1e-4
+#: Shares of the accelerations with which a way from a moving arm is tried.
+_SHARES: Final = (0.98, 0.9, 0.8)
+#: A limit is kept to this share of it, where an arm moves as fast as it may already.
+_ROUNDING: Final = 1e-3
 #: No x is as great.
 _FAR: Final = 1e12
 
@@ -88,8 +94,49 @@ def fastest(q: Array, limits: JointLimits, grid: TimeGrid) -> list[Way]:
     return _smoothed(times, positions, velocities, limits, grid)
 
 
+def fastest_from(q: Array, velocity: Array, limits: JointLimits, grid: TimeGrid) -> Way:
+    """As :func:`fastest`, for one path at whose beginning the arm moves already.
+
+    Args:
+        q: shape (steps + 1, n) [rad].
+        velocity: at the beginning, shape (n,) [rad/s].
+
+    Raises:
+        ValueError: if the limits do not allow to go on with this velocity.
+    """
+    steps, speed = len(q) - 1, float(np.linalg.norm(velocity))
+    if speed < _STANDING:
+        return fastest(q[None], limits, grid)[0]
+    # What is smoothed comes half a window late.
+    ahead = q.copy()
+    ahead[0] += velocity * grid.smooth_seconds / 2
+    rate = speed / max(float(np.linalg.norm(ahead[1] - ahead[0])) * steps, _TINY)
+    ends = ((1, velocity / rate), (1, np.zeros_like(velocity)))
+    spline = CubicSpline(np.linspace(0.0, 1.0, steps + 1), ahead, bc_type=ends)
+    points = np.linspace(0.0, 1.0, steps * grid.parts + 1)
+    positions, slopes, bends = (spline(points, order)[None] for order in range(3))
+    failure: ValueError | None = None
+    for share in _SHARES:
+        less = JointLimits(limits.velocity, share * limits.acceleration)
+        try:
+            speeds = np.sqrt(_fastest_squares(slopes, bends, less, points[1], rate**2))
+            durations = 2.0 * points[1] / np.maximum(speeds[:, 1:] + speeds[:, :-1], _TINY)
+            times = np.concatenate([np.zeros((1, 1)), np.cumsum(durations, axis=1)], axis=1)
+            rates = slopes * speeds[:, :, None]
+            return _smoothed(times, positions, rates, limits, grid, velocity)[0]
+        except ValueError as error:
+            failure = error
+    assert failure is not None
+    raise failure
+
+
 def _smoothed(
-    times: Array, positions: Array, velocities: Array, limits: JointLimits, grid: TimeGrid
+    times: Array,
+    positions: Array,
+    velocities: Array,
+    limits: JointLimits,
+    grid: TimeGrid,
+    velocity: Array | None = None,
 ) -> list[Way]:
     """Ways whose accelerations do not jump: each position is the mean of those around its time.
 
@@ -98,14 +145,20 @@ def _smoothed(
 
     Args:
         times, positions, velocities: of the ways, shapes (paths, points, ...).
+        velocity: before their beginnings, shape (n,) [rad/s]; None: rest.
+
+    Raises:
+        ValueError: if a way would have to begin more slowly than with a given velocity.
     """
+    rest = np.zeros_like(velocities[:, :1])
+    before = rest if velocity is None else rest + velocity
     window, ends = grid.smooth_seconds, times[:, -1]
     # All ways one after another, each with a rest before and behind it.
     begins = np.concatenate([[0.0], np.cumsum(ends + 3.0 * window)[:-1]]) + window
     joined = CubicHermiteSpline(
         (begins[:, None] + _rested(times, times[:, :1] - window, ends[:, None] + window)).ravel(),
-        np.concatenate(_rested(positions, positions[:, :1], positions[:, -1:])),
-        np.concatenate(_rested(velocities, 0.0 * velocities[:, :1], 0.0 * velocities[:, :1])),
+        np.concatenate(_rested(positions, positions[:, :1] - window * before, positions[:, -1:])),
+        np.concatenate(_rested(velocities, before, rest)),
     )
     passed = joined.antiderivative()
     counts = np.maximum(2, np.round((ends + window) / grid.seconds).astype(int)) + 1
@@ -115,9 +168,14 @@ def _smoothed(
     means = (passed(late) - passed(early)) / window
     rates = (joined(late) - joined(early)) / window
     stops = np.cumsum(counts)
-    means[stops - counts], means[stops - 1] = positions[:, 0], positions[:, -1]
-    rates[stops - counts] = rates[stops - 1] = 0.0
+    means[stops - counts] = positions[:, 0] - window / 2 * before[:, 0]
+    means[stops - 1] = positions[:, -1]
+    rates[stops - counts], rates[stops - 1] = before[:, 0], 0.0
     factors = _slower(means, rates, np.diff(np.concatenate(own)), stops, limits)
+    if velocity is not None:
+        if factors.max() > 1.0 + _ROUNDING:
+            raise ValueError("the arm is too fast to leave its way here")
+        factors = np.ones_like(factors)
     return [
         Way(factor * moments, places, speeds / factor)
         for factor, moments, places, speeds in zip(
@@ -131,12 +189,18 @@ def _rested(values: Array, first: Array, last: Array) -> Array:
     return np.concatenate([first, values, last], axis=1)
 
 
-def _fastest_squares(slopes: Array, bends: Array, limits: JointLimits, step: float) -> Array:
+def _fastest_squares(
+    slopes: Array, bends: Array, limits: JointLimits, step: float, first: float | None = None
+) -> Array:
     """x = ṡ² at the grid points, shape (paths, points).
 
     Args:
         slopes, bends: q' and q'' at the grid points, shape (paths, points, n).
         step: from one grid point to the next.
+        first: x at the beginning of all paths, where it is given.
+
+    Raises:
+        ValueError: if x at the beginning is too great.
     """
     paths, points, _ = slopes.shape
     with np.errstate(divide="ignore"):
@@ -161,7 +225,9 @@ def _fastest_squares(slopes: Array, bends: Array, limits: JointLimits, step: flo
         allowed = ((can[:, index + 1, None] + reach[:, index]) / rising[:, index]).min(axis=1)
         can[:, index] = np.minimum(most[:, index], allowed)
     squares = np.empty((paths, points))
-    squares[:, 0] = can[:, 0]
+    squares[:, 0] = can[:, 0] if first is None else first
+    if (squares[:, 0] > can[:, 0] * (1.0 + _ROUNDING)).any():
+        raise ValueError("the arm is too fast to come to rest on its way")
     for index in range(points - 1):
         highest = (slope[:, index] * squares[:, index, None] + reach[:, index]).min(axis=1)
         squares[:, index + 1] = np.clip(highest, 0.0, can[:, index + 1])

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..phases import HOME, PICK, PLACE, Phase, PhasePath
 from ..robots.joints import JointValues
-from .fastest import JointLimits, TimeGrid, Way, fastest
+from .fastest import JointLimits, TimeGrid, Way, fastest, fastest_from
 from .trajectory import Interval, Trajectory
 
 Array = NDArray[np.float64]
@@ -130,6 +130,7 @@ def time_paths(
     settings: TimingSettings,
     fingers: Array,
     open_first: float | None = None,
+    moving: Array | None = None,
 ) -> Trajectory:
     """The trajectory through solved phases, with the fingers' closing and opening at the switches.
 
@@ -141,6 +142,10 @@ def time_paths(
         paths: all of as many steps.
         fingers: positions of the two finger joints at the start, shape (2,) [m].
         open_first: finger position to go to before the arm moves [m]; None: they stay.
+        moving: with what velocity the arm sets out, shape (n,) [rad/s]; None: from rest.
+
+    Raises:
+        ValueError: if the first path cannot be gone with that velocity at its beginning.
     """
     scaled = JointLimits(
         settings.velocity_scale * limits.velocity,
@@ -153,7 +158,12 @@ def time_paths(
         target = np.full(2, open_first)
         points.grip(first.phase, first.q[0], now, target, settings.open_seconds)
         now = target
-    ways = fastest(np.stack([path.q for path in paths]), scaled, settings.grid)
+    q = np.stack([path.q for path in paths])
+    if moving is None:
+        ways = fastest(q, scaled, settings.grid)
+    else:
+        ways = [fastest_from(q[0], moving, scaled, settings.grid)]
+        ways += fastest(q[1:], scaled, settings.grid) if len(q) > 1 else []
     for index, (path, way) in enumerate(zip(paths, ways)):
         phase = path.phase
         wide = end = now if index == 0 and open_first is None else np.full(2, phase.tool.finger)

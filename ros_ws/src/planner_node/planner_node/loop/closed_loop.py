@@ -137,6 +137,7 @@ class ClosedLoop:
             except ImpossibleError as error:
                 # The poses are seen anew, which may be enough.
                 if not self._possible.forget_once():
+                    self._add_what_helps(error)
                     raise
                 self._because(str(error))
                 scene = self._look(Stage.PERCEIVING, "looking again", goal.names)
@@ -150,6 +151,14 @@ class ClosedLoop:
             return Status.ALREADY_TRUE, f"nothing to do: '{goal}' holds in {seen}"
         told = "".join(f"; {sentence}" for sentence in dict.fromkeys(self._remarks))
         return Status.SUCCESS, f"the camera confirms '{goal}': {seen}{told}"
+
+    def _add_what_helps(self, error: ImpossibleError) -> None:
+        """To the sentence, what would make the first plan that was refused possible."""
+        refused = self._possible.first_refused
+        suggestion = self._runs.helpful(refused) if refused is not None else ""
+        self._check()
+        if suggestion:
+            error.args = (f"{error}; what would help: {suggestion}",)
 
     def _work_off(self, scene: Scene, goal: Goal, found: SearchResult) -> Scene:
         """Has what was found carried out, all at once or with a look after each move."""

@@ -27,6 +27,7 @@ class Plan:
         moves: in order.
         states: the state before the first move and after each.
         predicted: the scene after each move: names, relations and places, no poses.
+        explain: nothing is to move; it is only asked why it was refused, and what would help.
     """
 
     plan_id: str
@@ -36,6 +37,7 @@ class Plan:
     moves: tuple[Move, ...]
     states: tuple[Stacks, ...]
     predicted: tuple[SceneGraph, ...]
+    explain: bool = False
 
     @property
     def blocks(self) -> tuple[str, ...]:

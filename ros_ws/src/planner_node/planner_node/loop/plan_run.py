@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+import uuid
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NoReturn
 
 from tamp_runtime.motion_report import ArmPlace, MotionReason, MotionReport, MotionState
@@ -110,6 +111,24 @@ class PlanRun:
         if end is None:
             self._stop(plan)
         return PlanEnd(end)
+
+    def helpful(self, plan: Plan) -> str:
+        """What would help a plan that was refused, in words; empty if nobody knows.
+
+        Nothing moves. See ``explain`` of SymbolicPlan.
+        """
+        asked = replace(plan, plan_id=f"why-{uuid.uuid4().hex[:12]}", explain=True)
+        self._watch = None
+        self._teller.tell(Stage.OPTIMISING, "looking for what would help")
+        self._motion.start(asked)
+        try:
+            end = self._motion.follow(self._on_report, self._stopped)
+            if end is None:
+                self._motion.stop(asked.plan_id)
+                end = self._motion.follow(self._on_report, self._shut_down)
+        except MotionSilentError:
+            end = None
+        return end.suggestion if end is not None else ""
 
     def judge(self, end: PlanEnd) -> PlannerError | None:
         """The error of a motion that failed for good; None if another look tells what to do.

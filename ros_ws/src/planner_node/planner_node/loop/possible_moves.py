@@ -29,6 +29,8 @@ class PossibleMoves:
 
     Attributes:
         given: another planner's plan, which is taken in place of the first search.
+        just_refused: whether the newest plan was.
+        first_refused: the first plan in the present scene that was; shortest, had it been possible.
     """
 
     def __init__(self, settings: Settings, cancelled: Callable[[], bool]) -> None:
@@ -36,6 +38,7 @@ class PossibleMoves:
         self._exclusions: list[Exclusion] = []
         self.just_refused = False
         self.given = ""
+        self.first_refused: Plan | None = None
         self._again = True
 
     def refused(self, plan: Plan, report: MotionReport) -> Exclusion | None:
@@ -47,6 +50,8 @@ class PossibleMoves:
             return None
         exclusion = exclusion_of(plan, report)
         if exclusion is not None:
+            if not self._exclusions:
+                self.first_refused = plan
             self._exclusions.append(exclusion)
             self.just_refused = True
         return exclusion
