@@ -95,13 +95,9 @@ def find_facets(candidates: Mask, look: Look, depth: Array) -> Facets:
         look: the picture.
         depth: NaN where it is unknown, which is no jump, shape (h, w) [m].
     """
-    linked, cuts = [], []
-    for axis in (0, 1):
-        low, high = _sides(axis)
-        linked.append(_linked(look, depth, low, high))
-        cuts.append(candidates[low] & candidates[high] & ~linked[axis])
+    linked = [_linked(look, depth, low, high) for low, high in map(_sides, (0, 1))]
     count, ids = _connected(candidates, linked)
-    return Facets(ids, count - 1, _borders(ids, count, cuts))
+    return Facets(ids, count - 1, _borders(count, ids))
 
 
 def without_leaks(facets: Facets, height: Array, reach: int) -> Facets:
@@ -143,15 +139,12 @@ def without_leaks(facets: Facets, height: Array, reach: int) -> Facets:
         beyond = (height < low[facets.ids] - LEAK) | (height > high[facets.ids] + LEAK)
     beyond &= facets.ids > 0
     leaks = np.bincount(facets.ids[beyond], minlength=facets.count + 1) >= LEAK_PIXELS
-    if not leaks.any():
-        return facets
     kept = (facets.ids > 0) & (wide | ~leaks[facets.ids])
     count, pieces = _connected(kept, same)
-    shared = pieces.copy()
+    shared = np.where(wide, pieces, 0)
     for _ in range(2 * reach):
         spread(shared, facets.ids > 0)
-    links = [(shared[low] > 0) & (shared[high] > 0) for low, high in map(_sides, (0, 1))]
-    return Facets(pieces, count - 1, _borders(shared, count, links))
+    return Facets(pieces, count - 1, _borders(count, pieces, shared))
 
 
 def _connected(pixels: Mask, links: Sequence[Mask]) -> tuple[int, Ids]:
@@ -215,16 +208,16 @@ def on_one_body(points: Array, depth: Array) -> list[Mask]:
     return links
 
 
-def _borders(ids: Ids, count: int, links: list[Mask]) -> NDArray[np.int64]:
-    """Which facets meet at pairs of neighbours, by axis; see :class:`Facets`."""
+def _borders(count: int, *numbered: Ids) -> NDArray[np.int64]:
+    """Which facets meet by any of some numberings of pixels, and where: see :class:`Facets`."""
     pairs = []
-    for axis, cut in enumerate(links):
-        low, high = _sides(axis)
-        first, second = ids[low][cut].astype(np.int64), ids[high][cut].astype(np.int64)
-        pairs.append(np.stack([np.minimum(first, second), np.maximum(first, second)]))
+    for ids in numbered:
+        for low, high in map(_sides, (0, 1)):
+            meet = (ids[low] > 0) & (ids[high] > 0) & (ids[low] != ids[high])
+            first, second = ids[low][meet].astype(np.int64), ids[high][meet].astype(np.int64)
+            pairs.append(np.stack([np.minimum(first, second), np.maximum(first, second)]))
     first, second = np.concatenate(pairs, axis=1)
-    apart = first != second
-    keys, lengths = np.unique(first[apart] * count + second[apart], return_counts=True)
+    keys, lengths = np.unique(first * count + second, return_counts=True)
     return np.column_stack([keys // count, keys % count, lengths])
 
 

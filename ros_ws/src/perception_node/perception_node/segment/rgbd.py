@@ -62,6 +62,8 @@ LEVEL: Final = 0.0025
 SAME_HEIGHT: Final = 0.006
 #: Normals of upright facets with a greater cosine between them are of one plane.
 ONE_PLANE: Final = 0.92
+#: Middles of two faces of one block are nearer than this, seen from above [m].
+ONE_BODY: Final = 0.08
 #: What hangs higher than this over what it should stand on does not stand [m].
 FLOATS: Final = 0.012
 #: Of a block often only the front is seen: it may reach so far beyond what is seen of it [m].
@@ -301,11 +303,17 @@ def _can_be_one_block(table: _Table, a: NDArray[np.int64], b: NDArray[np.int64])
     sliver = beside & (np.minimum(table.sure[a], table.sure[b]) < SLIVER)
     flat = np.abs(np.einsum("ni,ni->n", table.normal[a], table.normal[b])) > ONE_PLANE
     lit = np.abs(table.light[a] - table.light[b]) < MAX_CONTRAST
-    return (
-        same_hue
-        & lit
-        & (both_level | on_top | (upright & (np.where(flat, same_light, beside) | sliver)))
+    alike = same_hue & lit
+    alike &= both_level | on_top | (upright & (np.where(flat, same_light, beside) | sliver))
+    # Where shape leaves no doubt, colour need not tell: what mirrors the room has another one.
+    near = np.linalg.norm(table.centre[a, :2] - table.centre[b, :2], axis=1) < ONE_BODY
+    near &= table.broad[a] & table.broad[b]
+    just_on_top = on_top & (table.centre[lid, 2] < table.high[wall, 2] + SAME_HEIGHT)
+    as_high = (np.abs(table.low[a, 2] - table.low[b, 2]) < SAME_HEIGHT) & (
+        np.abs(table.high[a, 2] - table.high[b, 2]) < SAME_HEIGHT
     )
+    corner = upright & as_high & ~flat
+    return np.asarray(alike | (near & (just_on_top | corner)))
 
 
 def _which_are_blocks(
