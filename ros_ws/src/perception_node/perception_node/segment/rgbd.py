@@ -34,6 +34,8 @@ Mask = NDArray[np.bool_]
 MIN_HEIGHT: Final = 0.003
 #: Where the table is measured lower than it should be, blocks end there, but not deeper [m].
 MAX_SUNK: Final = 0.03
+#: What is before a block's wall by more than this is the table [m].
+BEFORE: Final = 0.02
 #: A block is nowhere wider and no higher than this [m], and not as small as
 MAX_WIDTH: Final = 0.11
 MAX_HEIGHT: Final = 0.09
@@ -149,7 +151,7 @@ def _labels(region: Region, look: Look, volume: Volume, smear: int) -> NDArray[n
     with np.errstate(invalid="ignore"):
         foot = region.inside & (region.points[..., 2] <= table_height + MIN_HEIGHT)
         foot &= region.points[..., 2] > table_height - MAX_SUNK
-    _grow_down(labels, foot, look)
+    _grow_down(labels, foot, look, region.points)
     _take_strips(labels, pieces, region, 2 * reach + 1)
     return labels
 
@@ -184,15 +186,22 @@ def _take_strips(
             spread(labels, pieces.ids > 0, links, may)
 
 
-def _grow_down(labels: NDArray[np.uint16], foot: Mask, look: Look) -> None:
-    """Gives the pixels at a block's foot, too low to tell from the table by depth, its label."""
+def _grow_down(labels: NDArray[np.uint16], foot: Mask, look: Look, points: Array) -> None:
+    """Gives the pixels at a block's foot, too low to tell from the table by depth, its label.
+
+    They are below it, not before it on the table.
+    """
     low, high = np.s_[:-1], np.s_[1:]
+    beside = points[..., :2].copy()
     for _ in range(labels.shape[0]):
         grows = (labels[low] > 0) & (labels[high] == 0) & foot[high]
-        grows[grows] = alike(look, np.nonzero(grows), (1, 0))
+        with np.errstate(invalid="ignore"):
+            away = np.abs(points[high][grows][:, :2] - beside[low][grows]).max(axis=1, initial=0.0)
+        grows[grows] = alike(look, np.nonzero(grows), (1, 0)) & (away < BEFORE)
         if not grows.any():
             return
         labels[high][grows] = labels[low][grows]
+        beside[high][grows] = beside[low][grows]
 
 
 def _measure(facets: Facets, look: Look, region: Region, smear: int, strip: int) -> _Table:
