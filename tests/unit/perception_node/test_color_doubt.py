@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from seen_worlds import TOWERS, camera_of
 
 from perception_node import Observation, Perception, load_weights
-from perception_node.names import MAX_DISTANCE, MIN_MARGIN, explain_colors, name_blocks
+from perception_node.names import MIN_MARGIN, explain_colors, name_blocks
 from scene_graph import BASIC_COLORS, COLORS, UNKNOWN, GraphStatus, up_relations
 from sim_node import ColorConfig, SensorConfig, World, sense
 
@@ -20,7 +20,7 @@ PERCEPTION = Perception(load_weights())
 
 def certain(colors: np.ndarray) -> np.ndarray:
     fit = explain_colors(colors)
-    return (fit.distances <= MAX_DISTANCE) & (fit.margins >= MIN_MARGIN)
+    return fit.known & (fit.margins >= MIN_MARGIN)
 
 
 @given(st.permutations(tuple(COLORS)), st.integers(4, 7), st.floats(0.6, 1.0))

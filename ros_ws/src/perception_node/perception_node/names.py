@@ -21,6 +21,10 @@ Array = NDArray[np.float64]
 _NAMES: Final = tuple(COLORS)
 #: Brightness that a surface may have, relative to the colour's own, in equal ratios.
 _SHADES: Final = np.geomspace(0.3, 1.2, 18)
+#: What a surface mirrors of the room, which is of no colour: of white light it is this part, and
+#: the cost of it [ΔE²]. A few hundredths of what falls on it, whatever it is made of.
+_MIRRORED: Final = np.array([0.0, 0.006, 0.014])
+_MIRROR_COST: Final = np.array([0.0, 6.0, 12.0])
 #: Cost of a block's shade that differs from the scene's, per squared logarithm [ΔE²].
 _OWN_SHADE_COST: Final = 1600.0
 #: Cost of a scene's shade that differs from the usual one, per squared logarithm [ΔE²].
@@ -38,9 +42,14 @@ _WHITE_ENOUGH: Final = 5.0
 _ENOUGH: Final = 3
 #: A block of no known colour says nothing of the light beyond this cost [ΔE²].
 _MOST_COST: Final = 400.0
+#: Light is about this power of its code in a picture.
+_GAMMA: Final = 2.2
 #: A colour is not named that is further than this from all names, or not nearer by this to its own
 #: than to the next one [ΔE].
 MAX_DISTANCE: Final = 6.0
+#: but so many times as far as half of a scene's blocks are, of which the light may be uneven, up to
+_UNEVEN: Final = 1.6
+_MOST_DISTANCE: Final = 9.0
 MIN_MARGIN: Final = 5.0
 
 
@@ -60,6 +69,12 @@ class ColorFit:
     others: tuple[str, ...]
     distances: Array
     margins: Array
+
+    @property
+    def known(self) -> NDArray[np.bool_]:
+        """Which colours have a name, shape (N,)."""
+        usual = _UNEVEN * float(np.median(self.distances)) if len(self.distances) else 0.0
+        return np.asarray(self.distances <= min(max(MAX_DISTANCE, usual), _MOST_DISTANCE))
 
 
 @dataclass(frozen=True)
@@ -92,8 +107,7 @@ def name_blocks(
     colors = mean_colors(rgb, [segment.part for segment in segments])
     fit = explain_colors(colors)
     known = tuple(
-        name if distance <= MAX_DISTANCE else UNKNOWN
-        for name, distance in zip(fit.names, fit.distances)
+        name if sure else UNKNOWN for name, sure in zip(fit.names, fit.known)
     )
     names = unique_names(known, shapes, stacks)
     return Names(known, names, _doubt(fit, colors, names))
@@ -101,9 +115,9 @@ def name_blocks(
 
 def _doubt(fit: ColorFit, colors: Array, names: Sequence[str]) -> str:
     """A sentence about the first colour without a certain name, or an empty string."""
-    if (fit.distances > MAX_DISTANCE).any():
+    if not fit.known.all():
         exchanged = explain_colors(colors[:, ::-1])
-        if (exchanged.distances <= MAX_DISTANCE).all() and (exchanged.margins >= MIN_MARGIN).all():
+        if exchanged.known.all() and (exchanged.margins >= MIN_MARGIN).all():
             return (
                 "some colours have no name, but all have one with red and blue exchanged; "
                 "is the picture's encoding (rgb8, bgr8) the one it is sent with?"
@@ -111,7 +125,7 @@ def _doubt(fit: ColorFit, colors: Array, names: Sequence[str]) -> str:
     for index, name in enumerate(names):
         red, green, blue = (round(255.0 * float(value)) for value in colors[index])
         seen = f"the colour of {name}, ({red}, {green}, {blue}) of 255,"
-        if fit.distances[index] > MAX_DISTANCE:
+        if not fit.known[index]:
             return f"{seen} is none that has a name; is the light very coloured or too bright?"
         if fit.margins[index] < MIN_MARGIN:
             return f"{seen} may be {fit.names[index]} or {fit.others[index]}; give it more light"
@@ -177,7 +191,9 @@ def _explain(colors: Array, gains: Array) -> tuple[ColorFit, Array]:
     # |a - b|² by a product: (lights, N, shades of the block, names)
     distance = (seen**2).sum(-1)[..., None] + (shaded**2).sum(-1)[:, None]
     distance -= 2.0 * seen @ shaded.transpose(0, 2, 1)
-    distance = distance.reshape(*seen.shape[:2], len(_SHADES), len(_NAMES))
+    distance = distance.reshape(*seen.shape[:2], len(_MIRRORED), len(_SHADES), len(_NAMES))
+    sheen = (distance + 0.25 * _MIRROR_COST[:, None, None]).min(axis=2)
+    distance = (distance + _MIRROR_COST[:, None, None]).min(axis=2)
     ratio = np.log(_SHADES[:, None] / _SHADES[None]) ** 2  # (shades of the block, of the scene)
     unusual = _SCENE_SHADE_COST * np.log(_SHADES / _USUAL_SHADE) ** 2
     tint = _GAIN_COST * (np.log(gains) ** 2).sum(axis=1)
@@ -196,7 +212,7 @@ def _explain(colors: Array, gains: Array) -> tuple[ColorFit, Array]:
         if total[light] < least:
             best, least, found = cost[light], float(total[light]), light
             own = 0.25 * _OWN_SHADE_COST * ratio[:, scene, None]
-            half = (distance[light] + own).min(axis=1)
+            half = (sheen[light] + own).min(axis=1)
     order = np.argsort(best, axis=1)[:, :2]
     near, next_one = np.sqrt(np.maximum(np.take_along_axis(best, order, axis=1), 0.0)).T
     of = np.arange(len(colors))
@@ -214,16 +230,22 @@ def _explain(colors: Array, gains: Array) -> tuple[ColorFit, Array]:
 
 @functools.cache
 def _shaded_names(gains: bytes) -> Array:
-    """CIE Lab of every colour in every shade, names fastest, shape (lights, shades · names, 3).
+    """CIE Lab of every colour in every shade, and with what it mirrors of the room.
 
     As it is once the light is taken out of what a sensor that saturates saw.
 
     Args:
         gains: of the lights, the bytes of doubles of shape (lights, 3).
+
+    Returns:
+        Names fastest, then shades, shape (lights, mirrored · shades · names, 3).
     """
-    light = np.frombuffer(gains).reshape(-1, 1, 1, 3)
+    light = np.frombuffer(gains).reshape(-1, 1, 1, 1, 3)
     palette = np.array([COLORS[name] for name in _NAMES])
-    seen = np.minimum(palette * _SHADES[:, None, None] * light, 1.0) / light
+    lit = palette * _SHADES[:, None, None]
+    # Light adds up, codes of it in a picture do not.
+    lit = (lit**_GAMMA + _MIRRORED[:, None, None, None]) ** (1.0 / _GAMMA)
+    seen = np.minimum(lit * light, 1.0) / light
     return _lab(np.minimum(seen, 1.0)).reshape(len(light), -1, 3)
 
 
