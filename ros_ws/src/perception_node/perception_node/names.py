@@ -50,6 +50,8 @@ MAX_DISTANCE: Final = 6.0
 #: but so many times as far as half of a scene's blocks are, of which the light may be uneven, up to
 _UNEVEN: Final = 1.6
 _MOST_DISTANCE: Final = 9.0
+#: where the gains of the light's colours are within this of each other's (natural logarithm).
+_PLAIN_LIGHT: Final = 0.25
 MIN_MARGIN: Final = 5.0
 
 
@@ -63,17 +65,21 @@ class ColorFit:
         distances: from the nearest, an own shade counting half, shape (N,) [ΔE].
         margins: by how much the next one is further away, in this light and in those by which all
             blocks together are explained about as well, shape (N,) [ΔE].
+        light: its colour, gains of red, green and blue.
     """
 
     names: tuple[str, ...]
     others: tuple[str, ...]
     distances: Array
     margins: Array
+    light: Array
 
     @property
     def known(self) -> NDArray[np.bool_]:
         """Which colours have a name, shape (N,)."""
-        usual = _UNEVEN * float(np.median(self.distances)) if len(self.distances) else 0.0
+        # In very coloured light all may be as far from the wrong names.
+        plain = bool(np.abs(np.log(self.light)).max() < _PLAIN_LIGHT)
+        usual = _UNEVEN * float(np.median(self.distances)) if plain and len(self.names) else 0.0
         return np.asarray(self.distances <= min(max(MAX_DISTANCE, usual), _MOST_DISTANCE))
 
 
@@ -167,13 +173,13 @@ def explain_colors(colors: Array) -> ColorFit:
         colors: sRGB in 0..1, shape (N, 3).
     """
     if len(colors) == 0:
-        return ColorFit((), (), np.zeros(0), np.zeros(0))
-    white, _ = _explain(colors, np.ones((1, 3)))
+        return ColorFit((), (), np.zeros(0), np.zeros(0), np.ones(3))
+    white = _explain(colors, np.ones((1, 3)))
     enough = len(colors) >= _ENOUGH and white.distances.max() < _WHITE_ENOUGH
     if enough and white.margins.min() >= MIN_MARGIN:
         return white
-    coarse, light = _explain(colors, _lights(_GAINS))
-    fine, _ = _explain(colors, light * _lights(_FINER_GAINS))
+    coarse = _explain(colors, _lights(_GAINS))
+    fine = _explain(colors, coarse.light * _lights(_FINER_GAINS))
     # A light far from the best one may explain the blocks by other names.
     return replace(fine, margins=np.minimum(fine.margins, coarse.margins))
 
@@ -184,8 +190,8 @@ def _lights(gains: Array) -> Array:
     return np.stack([red, np.ones_like(red), blue], axis=-1)
 
 
-def _explain(colors: Array, gains: Array) -> tuple[ColorFit, Array]:
-    """The same for lights of certain colours only, shape (lights, 3), and the best of them."""
+def _explain(colors: Array, gains: Array) -> ColorFit:
+    """The same for lights of certain colours only, shape (lights, 3)."""
     shaded = _shaded_names(gains.tobytes())
     seen = _lab(np.clip(colors[None] / gains[:, None], 0.0, 1.0))  # (lights, N, 3)
     # |a - b|² by a product: (lights, N, shades of the block, names)
@@ -224,8 +230,9 @@ def _explain(colors: Array, gains: Array) -> tuple[ColorFit, Array]:
         tuple(_NAMES[index] for index in order[:, 1]),
         np.sqrt(np.maximum(apart, 0.0)),
         np.minimum(next_one - near, risen),
+        gains[found],
     )
-    return fit, gains[found]
+    return fit
 
 
 @functools.cache
