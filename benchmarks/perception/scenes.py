@@ -10,12 +10,13 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
+import yaml
 from tasks.draw import draw_row
 from tasks.family import Row, Viewpoint
 from tasks.view import camera_of
 
 from scene_graph import BASIC_COLORS, BOX, CYLINDER, ROW_OF_THREE, Stacks, object_name
-from sim_node import all_layouts, random_arrangement, random_layout
+from sim_node import World, all_layouts, parse_scene, random_arrangement, random_layout
 
 #: Benchmarks' seeds begin here; nothing is tuned on them.
 FIRST_SEED: Final = 1000
@@ -38,6 +39,10 @@ class Drawn:
     seed: int
     layout: Stacks
     scene: Mapping[str, Any] | None = None
+
+    def world(self) -> World:
+        """A world of its own to draw it in; to be closed."""
+        return World(None if self.scene is None else parse_scene(yaml.safe_dump(dict(self.scene))))
 
 
 def plain(blocks: int, **camera: Any) -> Callable[[int], Drawn]:

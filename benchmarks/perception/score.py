@@ -10,16 +10,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import yaml
 from results_file import Row, wilson_interval
 
 from perception.scenes import Drawn
 from perception.sets import PictureSet
 from perception.views import view_of
 from perception_node import Perception, PerceptionConfig
+from perception_node.calibration import View
 from perception_node.visual_module.coordinates import Locator
 from scene_graph import GraphStatus, SceneGraph, SceneObject
-from sim_node import World, parse_scene, sense, true_scene_graph
+from sim_node import Frame, World, sense, true_scene_graph
 
 #: Every set is held to no more than this share of graphs that are accepted and wrong.
 ACCEPTED_WRONG = 0.001
@@ -58,23 +58,28 @@ def answer_of(
         world: to draw it in, where its scene is that of the plain world; None: one of its own.
     """
     if world is None:
-        config = None if drawn.scene is None else parse_scene(yaml.safe_dump(dict(drawn.scene)))
-        with World(config) as own:
+        with drawn.world() as own:
             return answer_of(drawn, item, locator, own)
     world.reset(drawn.layout, drawn.seed)
     frame = sense(world.render(), item.sensor, (drawn.seed, 0, 0))
-    truth = true_scene_graph(world)
+    view = view_of(world.config.camera, frame)
+    return answer_to(drawn.seed, view, frame, true_scene_graph(world), item.mask_source, locator)
+
+
+def answer_to(
+    seed: int, view: View, frame: Frame, truth: SceneGraph, mask_source: str, locator: Locator
+) -> Answer:
+    """What perception says of a picture, wherever it comes from."""
     feet = tuple(place.position_world for place in truth.places)
     perception = Perception(
-        locator, PerceptionConfig(mask_source=item.mask_source, stack_positions=feet)
+        locator, PerceptionConfig(mask_source=mask_source, stack_positions=feet)
     )
-    view = view_of(world.config.camera, frame)
     start = time.perf_counter()
     seen = perception.perceive(view.observation(frame.rgb, frame.labels, frame.depth))
     seconds = time.perf_counter() - start
     confident = seen.status is GraphStatus.CONFIDENT
     return Answer(
-        drawn.seed,
+        seed,
         seen.graph.relations == truth.relations,
         confident,
         seen.status.name,

@@ -23,6 +23,8 @@ _MARKER_TYPES: Final = {
     SPHERE: Marker.SPHERE,
     PRISM: Marker.CUBE,  # RViz has no prism
 }
+#: Of what is shown of blocks of unknown colours, sRGB in 0..1.
+_NO_COLOR: Final = (1.0, 1.0, 1.0)
 
 
 def lens_from_message(info: CameraInfo) -> LensModel:
@@ -72,7 +74,7 @@ def markers_from_graph(graph: SceneGraph, header: Header) -> MarkerArray:
         x, y, z = item.position_world
         qx, qy, qz, qw = item.quaternion_world
         pose = Pose(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw))
-        red, green, blue = COLORS[item.color]
+        red, green, blue = COLORS.get(item.color, _NO_COLOR)
         markers.append(
             Marker(
                 header=header,

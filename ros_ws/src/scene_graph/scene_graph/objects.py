@@ -35,6 +35,9 @@ COLORS: Final[dict[str, tuple[float, float, float]]] = {
     "lavender": (0.70, 0.60, 1.00),
 }
 
+#: Of a block whose colour is none of these.
+UNKNOWN: Final = "unknown"
+
 #: The nine colours of scenes that nobody described otherwise: random scenes and data sets draw
 #: from them, and they are what perception tells apart. The others are for scenes that name them.
 BASIC_COLORS: Final = tuple(COLORS)[:9]
@@ -62,7 +65,7 @@ class SceneObject:
 
     Attributes:
         name: unique in its graph, e.g. ``red_box``.
-        color, shape: as words.
+        color, shape: as words; a colour that is none of ``COLORS`` is ``UNKNOWN``.
         position_world: centre (x, y, z) [m].
         quaternion_world: orientation (x, y, z, w), unit norm.
         size: full extents along the block's own axes (x, y, z) [m].

@@ -20,7 +20,7 @@ MAX_OTHERS: Final = 0.4
 BEFORE: Final = 0.005
 #: Percentage of a block's pixels that may be nearer still.
 NEAREST: Final = 10
-#: Greatest middle range of a block's chromaticity (share of a channel in the sum of the three).
+#: Greatest range of half of a block's chromaticities (share of a channel in the sum of the three).
 #: One colour has 0.01, with grain of 20 grey levels up to 0.16 where it is dark; noise has 0.24.
 MAX_COLOR_RANGE: Final = 0.2
 #: Least share of a block's edge at which the picture changes: of blocks it is nearly all, even
@@ -117,7 +117,14 @@ def _edge_share(rgb: NDArray[np.uint8], outline: Mask, unlabelled: Mask) -> floa
 
 
 def _color_range(pixels: NDArray[np.uint8]) -> float:
-    """The widest range of the middle half of a channel's share, of pixels of shape (n, 3)."""
+    """The range of a channel's share that half of the pixels have, at best; the widest channel's.
+
+    A lid may mirror the room and look unlike the wall below it: half of the pixels are enough.
+
+    Args:
+        pixels: shape (n, 3).
+    """
     values = pixels[:: max(1, len(pixels) // PIXELS)].astype(np.float64) + 1.0
     shares = np.sort(values / values.sum(axis=1, keepdims=True), axis=0)
-    return float((shares[3 * len(shares) // 4] - shares[len(shares) // 4]).max())
+    half = len(shares) // 2
+    return float((shares[half:] - shares[: len(shares) - half]).min(axis=0).max())

@@ -21,7 +21,7 @@ from perception_node.alignment import smear_of
 from perception_node.errors import BadImageError
 from perception_node.observation import Observation
 
-from .facets import DEPTH_STEP, Facets, Look, alike, find_facets
+from .facets import LEAK, STRAY, Facets, Look, alike, find_facets, on_one_body, spread, without_leaks
 from .region import Region, look_at
 from .segments import Segments
 from .unseen import check_all_seen
@@ -34,10 +34,14 @@ Mask = NDArray[np.bool_]
 MIN_HEIGHT: Final = 0.003
 #: Where the table is measured lower than it should be, blocks end there, but not deeper [m].
 MAX_SUNK: Final = 0.03
+#: What is before a block's wall by more than this is the table [m].
+BEFORE: Final = 0.02
 #: A block is nowhere wider and no higher than this [m], and not as small as
 MAX_WIDTH: Final = 0.11
 MAX_HEIGHT: Final = 0.09
 MIN_SIDE: Final = 0.014
+#: Strips up to so many times as wide as a smeared edge are no faces.
+STRIP: Final = 2
 #: Facets of fewer pixels are noise, or the rim of another one.
 MIN_PIXELS: Final = 10
 #: Facets of which fewer pixels have a sure depth have no normal to rely on,
@@ -60,8 +64,8 @@ LEVEL: Final = 0.0025
 SAME_HEIGHT: Final = 0.006
 #: Normals of upright facets with a greater cosine between them are of one plane.
 ONE_PLANE: Final = 0.92
-#: Ends of a group of pixels, so that a few stray ones count for nothing [%].
-STRAY: Final = (1.0, 99.0)
+#: Middles of two faces of one block are nearer than this, seen from above [m].
+ONE_BODY: Final = 0.08
 #: What hangs higher than this over what it should stand on does not stand [m].
 FLOATS: Final = 0.012
 #: Of a block often only the front is seen: it may reach so far beyond what is seen of it [m].
@@ -108,6 +112,7 @@ class _Table:
         pixels: how many.
         sure: of how many the depth is sure.
         thick: whether it is more than a strip, as there are where a camera mixes two colours.
+        broad: whether it is more than a side or lid that is seen at a flat angle.
         chroma, light: means, shapes (F, 3), (F,).
         centre, low, high: mean and about the ends of the points, shape (F, 3) [m].
         normal: of the plane through them, shape (F, 3).
@@ -117,6 +122,7 @@ class _Table:
     pixels: NDArray[np.intp]
     sure: NDArray[np.intp]
     thick: Mask
+    broad: Mask
     chroma: Array
     light: Array
     centre: Array
@@ -133,8 +139,10 @@ def _labels(region: Region, look: Look, volume: Volume, smear: int) -> NDArray[n
         candidates = region.inside & (region.points[..., 2] > table_height + MIN_HEIGHT)
     if not candidates.any():
         return np.zeros(candidates.shape, np.uint16)
-    facets = find_facets(candidates, look, region.depth)
-    table = _measure(facets, look, region, smear)
+    reach = STRIP * smear
+    pieces = find_facets(candidates, look, region.depth)
+    facets = without_leaks(pieces, region.points[..., 2], reach)
+    table = _measure(facets, look, region, smear, reach)
     groups = _group(facets, table)
     block = _which_are_blocks(facets, table, groups, region.points, volume)
     numbers = np.zeros(len(block), np.uint16)
@@ -143,50 +151,60 @@ def _labels(region: Region, look: Look, volume: Volume, smear: int) -> NDArray[n
     with np.errstate(invalid="ignore"):
         foot = region.inside & (region.points[..., 2] <= table_height + MIN_HEIGHT)
         foot &= region.points[..., 2] > table_height - MAX_SUNK
-    _grow_down(labels, foot, look)
-    _take_rims(labels, candidates, region.depth, smear)
+    _grow_down(labels, foot, look, region.points)
+    _take_strips(labels, pieces, region, 2 * reach + 1)
     return labels
 
 
-def _take_rims(
-    labels: NDArray[np.uint16], candidates: Mask, depth: NDArray[np.float32], smear: int
+def _take_strips(
+    labels: NDArray[np.uint16], pieces: Facets, region: Region, width: int
 ) -> None:
-    """Gives thin strips that look like nothing the label of the block that they are on.
+    """Gives strips beside and above faces the labels of the blocks that they belong to.
 
-    Where a camera mixes the colours of two blocks, or of a block and what is behind it, there are
-    such strips between them.
+    Of the blocks that they touch it is the one as high as they are: of one further down in a tower
+    a side is seen beside the front of the next. What looks the same goes first, and what is as high
+    as none goes to any.
+
+    Args:
+        pieces: with strips.
+        width: of the strips at most [px].
     """
-    bare = (candidates & (labels == 0)).view(np.uint8)
-    thick = cv2.morphologyEx(bare, cv2.MORPH_OPEN, np.ones((2 * smear + 1,) * 2, np.uint8))
-    strips = np.flatnonzero(bare > thick)
-    if len(strips) == 0 or not labels.any():
-        return
-    distance, number = cv2.distanceTransformWithLabels(
-        (labels == 0).view(np.uint8), cv2.DIST_L2, 3, labelType=cv2.DIST_LABEL_PIXEL
-    )
-    # The numbers of the pixels that have labels, which the distances are to.
-    owners = np.zeros(int(number.max()) + 1, np.intp)
-    blocks = np.flatnonzero(labels)
-    owners[number.ravel()[blocks]] = blocks
-    owner = owners[number.ravel()[strips]]
-    with np.errstate(invalid="ignore"):
-        on_it = np.abs(depth.ravel()[strips] - depth.ravel()[owner]) < DEPTH_STEP
-    mine = on_it & (distance.ravel()[strips] < smear + 1.5)
-    labels.reshape(-1)[strips[mine]] = labels.ravel()[owner[mine]]
+    height = region.points[..., 2]
+    low, high = np.zeros(int(labels.max()) + 1), np.zeros(int(labels.max()) + 1)
+    for label in range(1, len(low)):
+        low[label], high[label] = np.percentile(height[labels == label], STRAY)
+
+    def as_high(given: NDArray[np.uint16], at: tuple[slice, ...]) -> Mask:
+        with np.errstate(invalid="ignore"):
+            above = height[at] > low[given] - SAME_HEIGHT
+            return np.asarray(above & (height[at] < high[given] + SAME_HEIGHT))
+
+    near = on_one_body(region.points, region.depth)
+    alike = [link & same for link, same in zip(near, pieces.links())]
+    for links, may in ((alike, as_high), (near, as_high), (near, None)):
+        for _ in range(width):
+            spread(labels, pieces.ids > 0, links, may)
 
 
-def _grow_down(labels: NDArray[np.uint16], foot: Mask, look: Look) -> None:
-    """Gives the pixels at a block's foot, too low to tell from the table by depth, its label."""
+def _grow_down(labels: NDArray[np.uint16], foot: Mask, look: Look, points: Array) -> None:
+    """Gives the pixels at a block's foot, too low to tell from the table by depth, its label.
+
+    They are below it, not before it on the table.
+    """
     low, high = np.s_[:-1], np.s_[1:]
+    beside = points[..., :2].copy()
     for _ in range(labels.shape[0]):
         grows = (labels[low] > 0) & (labels[high] == 0) & foot[high]
-        grows[grows] = alike(look, np.nonzero(grows), (1, 0))
+        with np.errstate(invalid="ignore"):
+            away = np.abs(points[high][grows][:, :2] - beside[low][grows]).max(axis=1, initial=0.0)
+        grows[grows] = alike(look, np.nonzero(grows), (1, 0)) & (away < BEFORE)
         if not grows.any():
             return
         labels[high][grows] = labels[low][grows]
+        beside[high][grows] = beside[low][grows]
 
 
-def _measure(facets: Facets, look: Look, region: Region, smear: int) -> _Table:
+def _measure(facets: Facets, look: Look, region: Region, smear: int, strip: int) -> _Table:
     used = facets.ids > 0
     ids, count = facets.ids[used], facets.count + 1
     pixels = np.bincount(ids, minlength=count)
@@ -215,6 +233,7 @@ def _measure(facets: Facets, look: Look, region: Region, smear: int) -> _Table:
         pixels,
         many_sure,
         _thick(facets, smear),
+        _thick(facets, 2 * strip),
         mean(look.chroma[used], ids, pixels),
         mean(look.light[used], ids, pixels)[:, 0],
         centre,
@@ -225,9 +244,9 @@ def _measure(facets: Facets, look: Look, region: Region, smear: int) -> _Table:
     )
 
 
-def _thick(facets: Facets, smear: int) -> Mask:
-    """Whether facets have pixels that are surrounded by their own, shape (F,)."""
-    ids, around = facets.ids.astype(np.float32), np.ones((smear + 1,) * 2, np.uint8)
+def _thick(facets: Facets, width: int) -> Mask:
+    """Whether facets are anywhere wider and higher than so many pixels, shape (F,)."""
+    ids, around = facets.ids.astype(np.float32), np.ones((width + 1,) * 2, np.uint8)
     core = (cv2.erode(ids, around) == ids) & (cv2.dilate(ids, around) == ids)
     thick = np.zeros(facets.count + 1, bool)
     thick[facets.ids[core]] = True
@@ -244,7 +263,8 @@ def _group(facets: Facets, table: _Table) -> NDArray[np.intp]:
     # that of a small neighbour.
     difference = np.linalg.norm(table.chroma[first] - table.chroma[second], axis=1)
     alike_first = np.argsort(difference)
-    alike_first = alike_first[difference[alike_first] < SLIVER_HUE]
+    fitting = (difference < SLIVER_HUE) & _as_high(table, large, first, second)
+    alike_first = alike_first[fitting[alike_first]]
     taken = True
     while taken:
         taken = False
@@ -256,6 +276,14 @@ def _group(facets: Facets, table: _Table) -> NDArray[np.intp]:
             groups[small] = groups[neighbour]
             large[small] = taken = True
     return groups
+
+
+def _as_high(table: _Table, large: Mask, a: NDArray[np.int64], b: NDArray[np.int64]) -> Mask:
+    """Whether of n pairs the small facet is nowhere higher or lower than the large one."""
+    small, other = np.where(large[a], b, a), np.where(large[a], a, b)
+    above = table.low[small, 2] > table.low[other, 2] - LEAK
+    below = table.high[small, 2] < table.high[other, 2] + LEAK
+    return np.asarray((above & below) | (large[a] == large[b]))
 
 
 def _joined(count: int, first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.intp]:
@@ -284,11 +312,17 @@ def _can_be_one_block(table: _Table, a: NDArray[np.int64], b: NDArray[np.int64])
     sliver = beside & (np.minimum(table.sure[a], table.sure[b]) < SLIVER)
     flat = np.abs(np.einsum("ni,ni->n", table.normal[a], table.normal[b])) > ONE_PLANE
     lit = np.abs(table.light[a] - table.light[b]) < MAX_CONTRAST
-    return (
-        same_hue
-        & lit
-        & (both_level | on_top | (upright & (np.where(flat, same_light, beside) | sliver)))
+    alike = same_hue & lit
+    alike &= both_level | on_top | (upright & (np.where(flat, same_light, beside) | sliver))
+    # Where shape leaves no doubt, colour need not tell: what mirrors the room has another one.
+    near = np.linalg.norm(table.centre[a, :2] - table.centre[b, :2], axis=1) < ONE_BODY
+    near &= table.broad[a] & table.broad[b]
+    just_on_top = on_top & (table.centre[lid, 2] < table.high[wall, 2] + SAME_HEIGHT)
+    as_high = (np.abs(table.low[a, 2] - table.low[b, 2]) < SAME_HEIGHT) & (
+        np.abs(table.high[a, 2] - table.high[b, 2]) < SAME_HEIGHT
     )
+    corner = upright & as_high & ~flat
+    return np.asarray(alike | (near & (just_on_top | corner)))
 
 
 def _which_are_blocks(
@@ -310,6 +344,7 @@ def _which_are_blocks(
     across = np.maximum(extent[:, 0], extent[:, 1])
     fits = some & (across < MAX_WIDTH) & (extent[:, 2] < MAX_HEIGHT)
     fits &= (across > MIN_SIDE) & (extent[:, 2] > MIN_SIDE)
+    fits &= np.bincount(groups, table.broad, minlength=count) > 0
     stands = fits & (low[:, 2] < volume.floor + FLOATS)
     for _ in range(count):
         under = np.flatnonzero(stands)
