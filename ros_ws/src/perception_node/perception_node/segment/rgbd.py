@@ -69,12 +69,13 @@ UNSEEN: Final = 0.015
 
 
 def find_in_rgbd(
-    observation: Observation, volume: Volume | None, may_miss: bool = False
+    observation: Observation, volume: Volume | None, labelled: Mask | None = None
 ) -> Segments:
     """The blocks in a volume over the table.
 
     Args:
-        may_miss: whether what has no depth may be left out.
+        labelled: pixels that are known to be of blocks, and may be without depth; None: there are
+            none, shape (height, width).
 
     Raises:
         BadImageError: if the observation has no depth or no camera, or the volume is not known, or
@@ -94,8 +95,8 @@ def find_in_rgbd(
     region = look_at(observation, volume)
     if region is not None:
         look = Look.of(region.rgb, observation.noise)
-        if not may_miss:
-            check_all_seen(region, look, labels.size)
+        known = None if labelled is None else labelled[region.box]
+        check_all_seen(region, look, labels.size, known)
         labels[region.box] = _labels(region, look, volume, smear_of(observation.rgb.shape[1]))
     return Segments.from_labels(labels, source="camera/depth/image_raw")
 
