@@ -94,7 +94,7 @@ def load_parameters(path: Path = PARAMETERS) -> Array:
     """
     content = json.loads(path.read_text())["weights"]
     if tuple(content) != EVIDENCE:
-        raise ValueError(f"{path} is of other evidence; fit it anew, see docs/training.md")
+        raise ValueError(f"{path} is of other evidence; fit it anew by benchmarks/fit_probability.py")
     return np.array(list(content.values()))
 
 
