@@ -47,7 +47,8 @@ def test_a_name_means_the_same_block_for_ever(seed: int, moves: list[int]) -> No
     stacks: list[list[int]] = [[], [], []]
     for block in rng.permutation(len(COLORS)):
         stacks[rng.integers(3)].append(int(block))
-    alike, owners, stamp = Alike(), {}, 0
+    alike, stamp = Alike(), 0
+    owners: dict[str, int] = {}
     for count in (0, *moves):
         for _ in range(count):
             moved(stacks, rng)

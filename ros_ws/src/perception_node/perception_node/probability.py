@@ -94,7 +94,9 @@ def load_parameters(path: Path = PARAMETERS) -> Array:
     """
     content = json.loads(path.read_text())["weights"]
     if tuple(content) != EVIDENCE:
-        raise ValueError(f"{path} is of other evidence; fit it anew by benchmarks/fit_probability.py")
+        raise ValueError(
+            f"{path} is of other evidence; fit it anew by benchmarks/fit_probability.py"
+        )
     return np.array(list(content.values()))
 
 

@@ -15,7 +15,7 @@ from scene_graph import BOX, CYLINDER, SPHERE
 #: A box shows at most this many faces, each of one brightness.
 _FACES: Final = 3
 #: Spread of brightness left within the faces, relative to the brightness, from which it is shading.
-_SHADED: Final = 0.03
+_SHADED: Final = 0.02
 #: A row is full that is at least this part of the widest row.
 _FULL: Final = 0.9
 #: Share of full rows from which a round block is a cylinder; a ball has 0.44 of them.
