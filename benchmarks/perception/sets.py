@@ -33,6 +33,7 @@ from sim_node import ColorConfig, DepthConfig, SegmentationConfig, SensorConfig
 
 #: What a real RGB-D camera does to depth: noise that grows with the square, lost edges.
 REAL_DEPTH: Final = DepthConfig(noise=0.0015, edge_dropout=0.5, edge_width=2)
+Range = tuple[float, float]
 #: Colours that no data set for training has.
 UNSEEN_COLORS: Final = tuple(color for color in COLORS if color not in BASIC_COLORS)
 HALF_HIDDEN: Final = "half of one block lost"
@@ -135,11 +136,17 @@ def _damaged(name: str, what: str, damage: Damage, mask_source: str = RGBD) -> P
     )  # fmt: skip
 
 
-def _lit(name: str, **light: tuple[float, float]) -> PictureSet:
+def _lit(
+    name: str, exposure: Range = (0.85, 1.1), red: Range = (1.0, 1.0), blue: Range = (1.0, 1.0)
+) -> PictureSet:
     return PictureSet(
-        f"names_{name}", f"3-7 blocks of 14 colours, {name} light",
-        colored(tuple(COLORS), **light), 500, names=(0.0005, 0.03), graph=0.97,
-    )  # fmt: skip
+        f"names_{name}",
+        f"3-7 blocks of 14 colours, {name} light",
+        colored(tuple(COLORS), exposure, red, blue),
+        500,
+        names=(0.0005, 0.03),
+        graph=0.97,
+    )
 
 
 def _as_cameras_are(
@@ -220,9 +227,9 @@ SETS: Final = (
                  note="places given")
       for name, most, thesis in (("half", 0.5, (0.892, 0.726)), ("one", 1.0, (0.902, 0.724)),
                                  ("two", 2.0, (0.902, 0.701)))),
-    _lit("white", exposure=(0.85, 1.1)),
-    _lit("warm", exposure=(0.85, 1.1), red=(1.05, 1.2), blue=(0.7, 0.9)),
-    _lit("cool", exposure=(0.85, 1.1), red=(0.75, 0.92), blue=(1.08, 1.25)),
+    _lit("white"),
+    _lit("warm", red=(1.05, 1.2), blue=(0.7, 0.9)),
+    _lit("cool", red=(0.75, 0.92), blue=(1.08, 1.25)),
     _lit("dim", exposure=(0.4, 0.7)),
     PictureSet("shapes", "boxes and cylinders of colours not seen, with depth",
                colored(UNSEEN_COLORS, shapes=("box", "cylinder")), 500, shapes=0.99,

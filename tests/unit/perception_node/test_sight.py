@@ -18,7 +18,7 @@ def test_a_picture_that_lost_a_half_makes_no_graph(world: World, side: str) -> N
     world.reset(TOWERS)
     frame = world.render()
     half = np.zeros(frame.labels.shape, bool)
-    rows, columns = half.shape[0] // 2, half.shape[1] // 2
+    rows, columns = (int(number) // 2 for number in frame.rgb.shape[:2])
     part: dict[str, Any] = {
         "left": np.s_[:, :columns],
         "right": np.s_[:, columns:],
