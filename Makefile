@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual record eval-perception eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock train-visual record eval-perception fit-probability eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -57,6 +57,9 @@ eval-latent-tasks: setup  ## goal images met in the simulator with representatio
 eval-perception: setup  ## graphs right, accepted and refused, set by set; SET= N= JOBS= RESUME=1 QUICK=1
 	@$(RUN) python benchmarks/eval_perception.py $(if $(SET),--set "$(SET)") $(if $(N),--n $(N)) \
 	  $(if $(JOBS),--jobs $(JOBS)) $(if $(RESUME),--resume) $(ARGS)
+
+fit-probability: setup  ## the probability that a graph is right, seeds 100 to 999; N=
+	@$(RUN) python benchmarks/fit_probability.py $(if $(N),--n $(N))
 
 eval-visual: setup  ## the visual module with masks given, on unseen states; QUICK=1
 	@$(RUN) python benchmarks/eval_visual.py $(ARGS)

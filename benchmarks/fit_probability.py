@@ -45,7 +45,7 @@ def main() -> int:
     right = np.array([answer.right for answer in used])
     weights = fit(seen, right)
     content = {
-        "command": f"benchmarks/fit_probability.py --n {options.n}",
+        "command": f"make fit-probability N={options.n}",
         "commit": source_commit(),
         "graphs": len(used),
         "right": int(right.sum()),
