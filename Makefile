@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock peers train-visual record eval-perception eval-photo eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-refusals bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock peers train-visual record eval-perception eval-photo fit-probability eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-refusals bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -60,6 +60,9 @@ eval-perception: setup  ## graphs right, accepted and refused, set by set; SET= 
 
 eval-photo: setup  ## graphs of photorealistic pictures; BPY=venv with bpy N= QUICK=1
 	@$(RUN) python benchmarks/eval_photo.py $(if $(N),--n $(N)) $(if $(BPY),--bpy "$(BPY)") $(ARGS)
+
+fit-probability: setup  ## the probability that a graph is right, seeds 100 to 999; N=
+	@$(RUN) python benchmarks/fit_probability.py $(if $(N),--n $(N))
 
 eval-visual: setup  ## the visual module with masks given, on unseen states; QUICK=1
 	@$(RUN) python benchmarks/eval_visual.py $(ARGS)

@@ -14,20 +14,19 @@ import argparse
 import json
 import sys
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import torch
-from perception.score import Answer, answer_of, refusals, rows_of
+from perception.score import Answer, answers_of, confidence_rows, refusals, rows_of
 from perception.sets import PictureSet, UnknownSetError, sets_named
 from results_file import Row, print_rows, quick, write_result
 from tqdm import tqdm
 
 from perception_node import load_weights
-from sim_node import World
 
 RUNS = Path("runs/eval_perception")
 #: Pictures that a process is given at once.
@@ -48,15 +47,18 @@ def main() -> int:
         return 2
     start = time.perf_counter()
     rows: list[Row] = []
+    seen: list[tuple[PictureSet, Answer]] = []
     refused: dict[str, Any] = {}
     wrong: dict[str, Any] = {}
     for item in chosen:
         count = min(item.count, options.n or (30 if quick() else item.count))
         answers = _answers(item, count, options.jobs, options.resume)
         rows += rows_of(item, answers)
+        seen += [(item, answer) for answer in answers]
         refused[item.what] = refusals(answers)
         if seeds := [answer.seed for answer in answers if answer.confident and not answer.right]:
             wrong[item.what] = seeds
+    rows += confidence_rows(seen)
     print_rows(rows)
     if options.set:
         print("nothing is published: not all sets were looked at")
@@ -93,22 +95,14 @@ def _answers(item: PictureSet, count: int, jobs: int, resume: bool) -> list[Answ
 def _look(name: str, numbers: Iterable[int]) -> list[Answer]:
     """In a process of its own: some pictures of a set."""
     (item,) = sets_named(name)
-    locator = load_weights()
-    return list(_in_worlds(item, locator, numbers))
-
-
-def _in_worlds(item: PictureSet, locator: Any, numbers: Iterable[int]) -> Iterator[Answer]:
-    drawn = [item.draw(number) for number in numbers]
-    if any(entry.scene is not None for entry in drawn):
-        yield from (answer_of(entry, item, locator) for entry in drawn)
-        return
-    with World() as world:
-        yield from (answer_of(entry, item, locator, world) for entry in drawn)
+    return list(answers_of(item, load_weights(), numbers))
 
 
 def _with_tuples(entry: dict[str, Any]) -> dict[str, Any]:
     errors = tuple(tuple(error) for error in entry["errors"])
-    return {**entry, "iou": tuple(entry["iou"]), "errors": errors}
+    named = tuple(tuple(block) for block in entry["named"])
+    tuples = {name: tuple(entry[name]) for name in ("iou", "baselines", "evidence")}
+    return {**entry, **tuples, "errors": errors, "named": named}
 
 
 if __name__ == "__main__":

@@ -86,10 +86,9 @@ def _answers(options: argparse.Namespace, count: int) -> dict[PictureSet, list[A
     for item, photo in tqdm(zip(drawn, photos), total=count, unit="picture", desc="photo"):
         for chosen, given in answers.items():
             frame = sense(photo.frame, chosen.sensor, (item.seed, 0, 0))
-            given.append(
-                answer_to(item.seed, View(photo.camera), frame, photo.truth, chosen.mask_source,
-                          locator)
-            )  # fmt: skip
+            observation = View(photo.camera).observation(frame.rgb, frame.labels, frame.depth)
+            answer, _ = answer_to(item.seed, observation, photo.truth, chosen, locator)
+            given.append(answer)
     return answers
 
 

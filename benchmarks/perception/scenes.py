@@ -15,13 +15,17 @@ from tasks.draw import draw_row
 from tasks.family import Row, Viewpoint
 from tasks.view import camera_of
 
-from scene_graph import BASIC_COLORS, BOX, CYLINDER, ROW_OF_THREE, Stacks, object_name
+from scene_graph import BASIC_COLORS, BOX, COLORS, CYLINDER, ROW_OF_THREE, Stacks, object_name
 from sim_node import World, all_layouts, parse_scene, random_arrangement, random_layout
 
 #: Benchmarks' seeds begin here; nothing is tuned on them.
 FIRST_SEED: Final = 1000
 #: Things that are not blocks stand this far from every place [m].
 CLUTTER_GAP: Final = 0.11
+#: Edge of a block in the plain world [m].
+EDGE: Final = 0.045
+#: A world in which blocks have any colour.
+COLORFUL: Final[Mapping[str, Any]] = {"blocks": {"colors": list(COLORS)}}
 #: Nothing stands this near to the arm's base [m].
 ARM_FOOT: Final = 0.17
 
@@ -34,11 +38,13 @@ class Drawn:
         seed: of what the world draws.
         layout: where the blocks stand.
         scene: content of its scene file; None: the plain world.
+        light: exposure, and gains of red, green and blue; None: as the sensor has it.
     """
 
     seed: int
     layout: Stacks
     scene: Mapping[str, Any] | None = None
+    light: tuple[float, tuple[float, float, float]] | None = None
 
     def world(self) -> World:
         """A world of its own to draw it in; to be closed."""
@@ -80,6 +86,77 @@ def turned(degrees: float) -> Callable[[int], Drawn]:
         return Drawn(seed, random_layout(seed, 6), {"cameras": [camera]})
 
     return draw
+
+
+def shifted_stacks(most: float) -> Callable[[int], Drawn]:
+    """Random states of six blocks whose stacks are further apart than those trained on (5.4.1).
+
+    Args:
+        most: greatest distance that is added between neighbours, in edges of a block.
+    """
+
+    def draw(number: int) -> Drawn:
+        seed = FIRST_SEED + number
+        rng = np.random.default_rng([seed, 9])
+        added = EDGE * rng.uniform(0.0, most, len(ROW_OF_THREE) - 1)
+        along = np.array([y for _, y, _ in ROW_OF_THREE])
+        along[1:] += np.cumsum(added)
+        along -= 0.5 * (along[0] + along[-1])
+        places = [(x, round(float(y), 4)) for (x, _, _), y in zip(ROW_OF_THREE, along)]
+        camera = camera_of(Viewpoint(), places, 8 * EDGE, 0.0)
+        scene = {"places": [list(place) for place in places], "cameras": [camera]}
+        return Drawn(seed, random_layout(seed, 6), scene)
+
+    return draw
+
+
+def colored(
+    colors: tuple[str, ...],
+    exposure: tuple[float, float] = (1.0, 1.0),
+    red: tuple[float, float] = (1.0, 1.0),
+    blue: tuple[float, float] = (1.0, 1.0),
+    shapes: tuple[str, ...] = (BOX,),
+) -> Callable[[int], Drawn]:
+    """Three to seven blocks of any of so many colours, in light that is drawn anew.
+
+    Args:
+        exposure, red, blue: ranges of the light's strength, and of gains over green.
+    """
+
+    def draw(number: int) -> Drawn:
+        seed = FIRST_SEED + number
+        rng = np.random.default_rng([seed, 10])
+        chosen = rng.permutation(list(colors))[: rng.integers(3, 8)]
+        names = [object_name(str(color), str(rng.choice(list(shapes)))) for color in chosen]
+        light = (
+            float(rng.uniform(*exposure)),
+            (float(rng.uniform(*red)), 1.0, float(rng.uniform(*blue))),
+        )
+        return Drawn(seed, random_arrangement(names, rng), COLORFUL, light)
+
+    return draw
+
+
+def any_number(number: int) -> Drawn:
+    """One to twelve blocks, up to as high as the arm stacks them, on three places."""
+    seed = FIRST_SEED + number
+    rng = np.random.default_rng([seed, 11])
+    colors = rng.permutation(list(COLORS))[: rng.integers(1, 13)]
+    names = [object_name(str(color), BOX) for color in colors]
+    while max(map(len, layout := random_arrangement(names, rng))) > 11:
+        pass
+    blocks = {"most": 12, "colors": list(COLORS)}
+    camera = {"name": "camera", "position": [1.6, 0.0, 0.45], "target": [0.5, 0.0, 0.24]}
+    return Drawn(seed, layout, {"blocks": blocks, "cameras": [camera]})
+
+
+def beside_the_picture(number: int) -> Drawn:
+    """Six blocks, the camera turned so far that some of them may be outside its picture."""
+    seed = FIRST_SEED + number
+    rng = np.random.default_rng([seed, 12])
+    aside, up = rng.uniform(-0.3, 0.3), rng.uniform(0.05, 0.22)
+    target = [0.5, round(float(aside), 4), round(float(up), 4)]
+    return Drawn(seed, random_layout(seed, 6), {"cameras": [{"name": "camera", "target": target}]})
 
 
 def solids(

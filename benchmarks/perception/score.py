@@ -3,26 +3,35 @@
 
 from __future__ import annotations
 
+import functools
+import itertools
 import re
 import time
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 from results_file import Row, wilson_interval
 
+from perception.damages import Shot
 from perception.scenes import Drawn
 from perception.sets import PictureSet
 from perception.views import view_of
-from perception_node import Perception, PerceptionConfig
-from perception_node.calibration import View
+from perception_node import MaskCentroid, Observation, Perceived, Perception, PerceptionConfig
 from perception_node.visual_module.coordinates import Locator
-from scene_graph import GraphStatus, SceneGraph, SceneObject
-from sim_node import Frame, World, sense, true_scene_graph
+from scene_graph import UNKNOWN, GraphStatus, SceneGraph, SceneObject
+from sim_node import Frame, World, random_arrangement, sense, true_scene_graph
 
 #: Every set is held to no more than this share of graphs that are accepted and wrong.
 ACCEPTED_WRONG = 0.001
+#: What finds coordinates in place of the visual module, by the name of its row.
+BASELINES: Final[Mapping[str, Locator]] = {
+    "mask centroid": MaskCentroid(),
+    "largest part's centroid": MaskCentroid(largest_part_only=True),
+}
 
 
 @dataclass(frozen=True)
@@ -37,6 +46,9 @@ class Answer:
         seconds: that it took.
         errors: for each block that was named rightly in a confident graph: of the centre [mm], of
             the size [mm], of yaw [degrees], and of the centre in stated standard deviations.
+        named: of each block its true colour and shape, and those seen, empty where it was not.
+        probability, evidence: of :class:`Perceived`.
+        baselines: whether the graph is right with each of :data:`BASELINES`.
     """
 
     seed: int
@@ -47,38 +59,53 @@ class Answer:
     iou: tuple[float, ...]
     seconds: float
     errors: tuple[tuple[float, float, float], ...] = ()
+    named: tuple[tuple[str, str, str, str], ...] = ()
+    baselines: tuple[bool, ...] = ()
+    probability: float = 0.0
+    evidence: tuple[float, ...] = ()
 
 
-def answer_of(
-    drawn: Drawn, item: PictureSet, locator: Locator, world: World | None = None
-) -> Answer:
+def answer_of(drawn: Drawn, item: PictureSet, locator: Locator, world: World) -> Answer:
     """What perception says of one picture.
 
     Args:
-        world: to draw it in, where its scene is that of the plain world; None: one of its own.
+        world: of its scene.
     """
-    if world is None:
-        with drawn.world() as own:
-            return answer_of(drawn, item, locator, own)
     world.reset(drawn.layout, drawn.seed)
-    frame = sense(world.render(), item.sensor, (drawn.seed, 0, 0))
+    exact, truth = world.render(), true_scene_graph(world)
+    sensor = item.sensor
+    if drawn.light is not None:
+        color = replace(sensor.color, exposure=drawn.light[0], cast=drawn.light[1])
+        sensor = replace(sensor, color=color)
+    frame = sense(exact, sensor, (drawn.seed, 0, 0))
+    true_blocks = _true_blocks(world) if item.names or item.shapes else {}
     view = view_of(world.config.camera, frame)
-    return answer_to(drawn.seed, view, frame, true_scene_graph(world), item.mask_source, locator)
+    observation = view.observation(frame.rgb, frame.labels, frame.depth)
+    if item.damage is not None:
+        rng = np.random.default_rng([drawn.seed, 13])
+        earlier = functools.partial(_other_state, world, drawn)
+        observation = item.damage(observation, Shot(exact.labels, earlier, rng))
+    answer, seen = answer_to(drawn.seed, observation, truth, item, locator)
+    return replace(answer, named=_named(seen, exact.labels, true_blocks))
 
 
 def answer_to(
-    seed: int, view: View, frame: Frame, truth: SceneGraph, mask_source: str, locator: Locator
-) -> Answer:
-    """What perception says of a picture, wherever it comes from."""
+    seed: int, observation: Observation, truth: SceneGraph, item: PictureSet, locator: Locator
+) -> tuple[Answer, Perceived]:
+    """What perception says of a picture, wherever it comes from; blocks by name left out."""
     feet = tuple(place.position_world for place in truth.places)
     perception = Perception(
-        locator, PerceptionConfig(mask_source=mask_source, stack_positions=feet)
+        locator, PerceptionConfig(mask_source=item.mask_source, stack_positions=feet)
     )
     start = time.perf_counter()
-    seen = perception.perceive(view.observation(frame.rgb, frame.labels, frame.depth))
+    seen = perception.perceive(observation)
     seconds = time.perf_counter() - start
+    others = [
+        Perception(baseline, perception.config).perceive(observation).graph.relations
+        for baseline in (BASELINES.values() if item.baselines else ())
+    ]
     confident = seen.status is GraphStatus.CONFIDENT
-    return Answer(
+    answer = Answer(
         seed,
         seen.graph.relations == truth.relations,
         confident,
@@ -86,8 +113,50 @@ def answer_to(
         seen.message,
         tuple(float(block.confidence) for block in seen.graph.objects),
         seconds,
-        _errors(seen.graph, truth) if confident else (),
+        _errors(seen.graph, truth) if confident and item.damage is None else (),
+        baselines=tuple(other == truth.relations for other in others),
+        probability=seen.probability,
+        evidence=seen.evidence,
     )
+    return answer, seen
+
+
+def answers_of(item: PictureSet, locator: Locator, numbers: Iterable[int]) -> Iterator[Answer]:
+    """What perception says of some pictures of a set; each world is built once for those in a row
+    that have it."""
+    drawn = [item.draw(number) for number in numbers]
+    for _, group in itertools.groupby(drawn, lambda entry: entry.scene):
+        entries = list(group)
+        with entries[0].world() as world:
+            yield from (answer_of(entry, item, locator, world) for entry in entries)
+
+
+def _other_state(world: World, drawn: Drawn) -> Frame:
+    """A picture of another state of the same blocks."""
+    names = [name for stack in drawn.layout for name in stack]
+    rng = np.random.default_rng([drawn.seed, 14])
+    while (layout := random_arrangement(names, rng, len(drawn.layout))) == drawn.layout:
+        pass
+    world.reset(layout, drawn.seed)
+    return world.render()
+
+
+def _true_blocks(world: World) -> dict[int, tuple[str, str]]:
+    """Colour and shape of each block by its label."""
+    blocks = {world.label(name): world.block(name) for name in world.names}
+    return {label: (block.color, block.shape) for label, block in blocks.items()}
+
+
+def _named(
+    seen: Perceived, labels: NDArray[np.uint16], blocks: Mapping[int, tuple[str, str]]
+) -> tuple[tuple[str, str, str, str], ...]:
+    """What each block is, and what the object is called that has most of its pixels."""
+    found = {}
+    for item in seen.graph.objects if seen.segments is not None else ():
+        assert seen.segments is not None
+        inside = labels[seen.segments.label_image == item.label]
+        found[int(np.bincount(inside).argmax())] = (item.color, item.shape)
+    return tuple((*block, *found.get(label, ("", ""))) for label, block in blocks.items())
 
 
 def _errors(seen: SceneGraph, truth: SceneGraph) -> tuple[tuple[float, float, float], ...]:
@@ -120,13 +189,19 @@ def rows_of(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
     wrong = sum(answer.confident and not answer.right for answer in answers)
     seconds = 1000.0 * np.array([answer.seconds for answer in answers])
     iou = [value for answer in answers for value in answer.iou]
+    refused = sum(not answer.confident for answer in answers)
     rows = [
         Row(item.what, "graph right", right / n, "", n, wilson_interval(right, n),
-            None if item.graph is None else f">= {item.graph}", item.thesis[0]),
+            None if item.graph is None else f">= {item.graph}", item.thesis[0], item.note),
+        *_baseline_rows(item, answers, right / n),
         Row(item.what, "accepted and right", accepted / n, "", n, wilson_interval(accepted, n),
             f">= {item.accepted}" if item.graph is not None else None),
         Row(item.what, "accepted and wrong", wrong / n, "", n, wilson_interval(wrong, n),
             f"<= {ACCEPTED_WRONG}"),
+        Row(item.what, "refused with a sentence",
+            sum(not answer.confident and bool(answer.message) for answer in answers)
+            / max(1, refused), "", refused, None, "== 1.0" if refused else None),
+        *_name_rows(item, answers),
         Row(item.what, "IoU, mean", float(np.mean(iou)) if iou else 0.0, "", len(iou), None,
             None if item.iou is None else f">= {item.iou}", item.thesis[1]),
         Row(item.what, "picture to graph, median", float(np.median(seconds)), "ms", n,
@@ -147,6 +222,43 @@ def rows_of(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
         _error_row(item, "error of sizes, 99th percentile", float(worst[1]), size_bound, n),
         _error_row(item, "error of yaw, median", float(np.median(yaw)), yaw_bound, n, "°"),
     ]
+
+
+def _baseline_rows(item: PictureSet, answers: Sequence[Answer], ours: float) -> list[Row]:
+    if not item.baselines:
+        return []
+    n = len(answers)
+    rights = [sum(answer.baselines[index] for answer in answers) for index in range(len(BASELINES))]
+    best = max(rights) / n
+    return [
+        *(Row(item.what, f"graph right, {name}", right / n, "", n, wilson_interval(right, n))
+          for name, right in zip(BASELINES, rights)),
+        Row(item.what, "graph right, above the better centroid by", ours - best, "", n),
+    ]  # fmt: skip
+
+
+def _name_rows(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
+    blocks = [(answer.confident, *block) for answer in answers for block in answer.named]
+    n, rows = len(blocks), []
+    if item.names is not None:
+        wrong = sum(
+            confident and seen not in ("", UNKNOWN, color)
+            for confident, color, _, seen, _ in blocks
+        )
+        unnamed = sum(seen in ("", UNKNOWN) for _, _, _, seen, _ in blocks)
+        rows += [
+            Row(item.what, "colours wrong with confidence", wrong / n, "", n,
+                wilson_interval(wrong, n), f"<= {item.names[0]}"),
+            Row(item.what, "colours not named", unnamed / n, "", n,
+                wilson_interval(unnamed, n), f"<= {item.names[1]}"),
+        ]  # fmt: skip
+    if item.shapes is not None:
+        right = sum(shape == seen for _, _, shape, _, seen in blocks)
+        rows.append(
+            Row(item.what, "shapes right", right / n, "", n, wilson_interval(right, n),
+                f">= {item.shapes}", 0.97)
+        )  # fmt: skip
+    return rows
 
 
 def _error_row(
@@ -170,3 +282,42 @@ def refusals(answers: Sequence[Answer]) -> dict[str, int]:
 def _without_particulars(sentence: str) -> str:
     sentence = re.sub(r"\b\w+_(box|cylinder|sphere)(_\d+)?\b", "BLOCK", sentence)
     return re.sub(r"-?\d+(\.\d+)?", "N", sentence)
+
+
+#: Graphs are sorted by their probability into so many groups of equal size.
+_GROUPS: Final = 10
+
+
+def confidence_rows(seen: Sequence[tuple[PictureSet, Answer]]) -> list[Row]:
+    """How well the probability of a graph is calibrated, and what it is good for."""
+    told = [(item, answer) for item, answer in seen if item.told and answer.evidence]
+    if not told:
+        return []
+    stated = np.array([answer.probability for _, answer in told])
+    right = np.array([answer.right for _, answer in told])
+    error = calibration_error(stated, right)
+    what, n = "probability of a graph, all sets whose damage can be seen", len(told)
+    rows = [Row(what, "calibration error", error, "", n, required="<= 0.02")]
+    wrong = stated[~right & np.array([item.damage is None for item, _ in told])]
+    threshold = float(wrong.max(initial=0.0))
+    ours = [answer for item, answer in told if item.name in ("six", "seven")]
+    if ours:
+        rejected = sum(answer.probability <= threshold for answer in ours) / len(ours)
+        rows.append(
+            Row("D_sim, 6 and 7 objects", "rejected at 0 wrong accepted in any undamaged set",
+                rejected, "", len(ours), required="<= 0.02", thesis=0.047,
+                note=f"{len(wrong)} wrong graphs")
+        )  # fmt: skip
+    return rows
+
+
+def calibration_error(stated: NDArray[np.float64], right: NDArray[np.bool_]) -> float:
+    """Mean distance of stated probabilities from how often it is so, in groups of equal size.
+
+    Args:
+        stated, right: shape (N,).
+    """
+    order = np.argsort(stated, kind="stable")
+    groups = [group for group in np.array_split(order, _GROUPS) if len(group)]
+    off = [len(group) * abs(stated[group].mean() - right[group].mean()) for group in groups]
+    return float(sum(off) / len(stated))

@@ -7,12 +7,40 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
-from perception.scenes import Drawn, plain, solids, state_of_six, turned
+from perception.damages import (
+    OF_LABELS,
+    OF_PICTURES,
+    Damage,
+    Shot,
+    half_hidden,
+    no_depth,
+)
+from perception.scenes import (
+    Drawn,
+    any_number,
+    beside_the_picture,
+    colored,
+    plain,
+    shifted_stacks,
+    solids,
+    state_of_six,
+    turned,
+)
+from perception_node import Observation
 from perception_node.segment import RGBD, SEGMENTATION_TOPIC
+from scene_graph import BASIC_COLORS, COLORS
 from sim_node import ColorConfig, DepthConfig, SegmentationConfig, SensorConfig
 
 #: What a real RGB-D camera does to depth: noise that grows with the square, lost edges.
 REAL_DEPTH: Final = DepthConfig(noise=0.0015, edge_dropout=0.5, edge_width=2)
+Range = tuple[float, float]
+#: Colours that no data set for training has.
+UNSEEN_COLORS: Final = tuple(color for color in COLORS if color not in BASIC_COLORS)
+HALF_HIDDEN: Final = "half of one block lost"
+#: Damages after which a picture may be as one of another state: only a moment before could tell.
+UNTOLD: Final = ("mirrored", "depth_frozen", "color_frozen")
+#: What is done with masks where depth is there as well.
+SNAPPED: Final = "masks are made those of what is found in colour and depth: little is left"
 _VGA: Final[Mapping[str, Any]] = {"width": 640, "height": 480}
 #: A lens as those of cameras that see 60 degrees across, nearer than usual, so that blocks are in
 #: more than the middle of the picture; barrel distortion moves its corners by 47 px, blocks by 7.
@@ -39,6 +67,14 @@ class PictureSet:
         iou: least mean IoU.
         thesis: its numbers for graph and IoU.
         sizes: bounds on the 99th percentile of the errors of centre and size of the accepted [mm].
+        damage: what becomes of the picture then; what is wrong with it has to be noticed, and no
+            more: of how many graphs are right or accepted nothing is required.
+        names: greatest shares of blocks that have a wrong name in a confident graph, and that have
+            no name; None: not counted.
+        shapes: least share of blocks with the right shape; None: not counted.
+        baselines: whether the centroids of masks stand beside the visual module.
+        told: whether one picture can tell what is wrong with it.
+        note: what has to be known to read the rows.
         poses: bounds on median and 99th percentile of the centre's error [mm], median of yaw's [°].
     """
 
@@ -54,6 +90,12 @@ class PictureSet:
     thesis: tuple[float | None, float | None] = (None, None)
     sizes: tuple[float, float] | None = None
     poses: tuple[float, float, float] | None = None
+    damage: Damage | None = None
+    names: tuple[float, float] | None = None
+    shapes: float | None = None
+    baselines: bool = False
+    told: bool = True
+    note: str | None = None
 
 
 def _with_label_error(kind: str, strength: int, count: int = 500) -> PictureSet:
@@ -64,6 +106,45 @@ def _with_label_error(kind: str, strength: int, count: int = 500) -> PictureSet:
         count,
         SensorConfig(segmentation=SegmentationConfig(kind, strength)),
         SEGMENTATION_TOPIC,
+        graph=0.97,
+        note=SNAPPED,
+    )
+
+
+def _of_masks_alone(kind: str, strength: int, damage: Damage = no_depth) -> PictureSet:
+    """Without depth, where stacks follow from the masks' coordinates alone."""
+    exact = SegmentationConfig() if kind in ("exact", HALF_HIDDEN) else None
+    return PictureSet(
+        f"masks_{kind.replace(' ', '_')}_{strength}",
+        f"given masks {kind}, strength {strength}, no depth; 6 objects",
+        plain(6),
+        500,
+        SensorConfig(segmentation=exact or SegmentationConfig(kind, strength)),
+        SEGMENTATION_TOPIC,
+        graph=0.97,
+        damage=damage,
+        baselines=True,
+        note="stacks follow from the masks alone, and places from the camera",
+    )
+
+
+def _damaged(name: str, what: str, damage: Damage, mask_source: str = RGBD) -> PictureSet:
+    told = name not in UNTOLD
+    return PictureSet(
+        f"damage_{name}", what, plain(6), 200, mask_source=mask_source, damage=damage, told=told,
+        note=None if told else "a picture of another state of the table looks the same",
+    )  # fmt: skip
+
+
+def _lit(
+    name: str, exposure: Range = (0.85, 1.1), red: Range = (1.0, 1.0), blue: Range = (1.0, 1.0)
+) -> PictureSet:
+    return PictureSet(
+        f"names_{name}",
+        f"3-7 blocks of 14 colours, {name} light",
+        colored(tuple(COLORS), exposure, red, blue),
+        500,
+        names=(0.0005, 0.03),
         graph=0.97,
     )
 
@@ -80,6 +161,10 @@ def _as_cameras_are(
         graph=0.97,
         accepted=0.97,
     )
+
+
+def _half_hidden_without_depth(seen: Observation, shot: Shot) -> Observation:
+    return no_depth(half_hidden(seen, shot), shot)
 
 
 _REAL: Final = SensorConfig(depth=REAL_DEPTH)
@@ -129,6 +214,33 @@ SETS: Final = (
     _with_label_error("merged", 1),
     _with_label_error("split", 1),
     _with_label_error("speckled", 5),
+    replace(_with_label_error("exact", 1), name="labels_half_hidden", damage=half_hidden,
+            what=f"given masks, {HALF_HIDDEN}; 6 objects"),
+    *(_of_masks_alone(kind, strength)
+      for kind, strength in (
+          ("exact", 1), ("eroded", 2), ("dilated", 2), ("shifted", 2), ("boundary", 2),
+          ("merged", 1), ("split", 1), ("speckled", 5),
+      )),
+    _of_masks_alone(HALF_HIDDEN, 1, _half_hidden_without_depth),
+    *(PictureSet(f"shifted_{name}", f"stacks shifted, ε ≤ {most:g} blocks; 6 objects",
+                 shifted_stacks(most), 500, graph=0.99, iou=0.88, thesis=thesis,
+                 note="places given")
+      for name, most, thesis in (("half", 0.5, (0.892, 0.726)), ("one", 1.0, (0.902, 0.724)),
+                                 ("two", 2.0, (0.902, 0.701)))),
+    _lit("white"),
+    _lit("warm", red=(1.05, 1.2), blue=(0.7, 0.9)),
+    _lit("cool", red=(0.75, 0.92), blue=(1.08, 1.25)),
+    _lit("dim", exposure=(0.4, 0.7)),
+    PictureSet("shapes", "boxes and cylinders of colours not seen, with depth",
+               colored(UNSEEN_COLORS, shapes=("box", "cylinder")), 500, shapes=0.99,
+               thesis=(None, None)),
+    PictureSet("shapes_no_depth", "boxes and cylinders of colours not seen, given masks, no depth",
+               colored(UNSEEN_COLORS, shapes=("box", "cylinder")), 500,
+               mask_source=SEGMENTATION_TOPIC, damage=no_depth, shapes=0.99),
+    *(_damaged(name, *entry) for name, entry in OF_PICTURES.items()),
+    *(_damaged(name, *entry, SEGMENTATION_TOPIC) for name, entry in OF_LABELS.items()),
+    PictureSet("any_number", "1 to 12 blocks", any_number, 300),
+    PictureSet("outside", "blocks outside the picture", beside_the_picture, 300),
 )  # fmt: skip
 
 

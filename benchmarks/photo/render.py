@@ -17,7 +17,7 @@ from perception.scenes import Drawn
 
 from perception_node import PinholeCamera
 from scene_graph import COLORS, SceneGraph
-from sim_node import Frame, World, true_scene_graph
+from sim_node import Frame, true_scene_graph
 from sim_node.scene import CameraConfig
 
 PROCESS: Final = Path(__file__).parent / "process.py"
@@ -62,7 +62,7 @@ class Blender:
                 f"{environment} has no {WHEEL}; make one: python3.11 -m venv {environment} && "
                 f"{environment}/bin/pip install 'bpy<5'"
             )
-        self._log = tempfile.TemporaryFile("w+")
+        self._log = tempfile.TemporaryFile("w+")  # noqa: SIM115 - closed with the process
         self._process = subprocess.Popen(
             [str(python.absolute()), str(PROCESS)],
             stdin=subprocess.PIPE,

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Labels of a detector that errs are corrected or refused, never believed and wrong."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from seen_worlds import LABELLED, TOWERS, observe, perceive
@@ -53,3 +55,14 @@ def test_labels_without_depth_are_taken_as_they_are(world: World) -> None:
     assert observation.labels is not None
     segments = given_labels(observation)
     assert np.array_equal(segments.label_image, observation.labels)
+
+
+@pytest.mark.parametrize("kind", ["shifted", "boundary", "eroded"])
+def test_without_depth_what_is_beside_a_block_does_not_change_its_shape(
+    world: World, kind: str
+) -> None:
+    world.reset(TOWERS)
+    observation = observe(world, sense(world.render(), erring(kind, 2)))
+    perceived = LABELLED.perceive(replace(observation, depth=None))
+    assert {item.shape for item in perceived.graph.objects} == {"box"}
+    assert perceived.graph.relations == up_relations(TOWERS)

@@ -61,6 +61,7 @@ def perceived_to_message(
     message = graph_to_message(perceived.graph, header)
     message.status = int(perceived.status)
     message.message = perceived.message
+    message.probability = float(perceived.probability)
     message.processing_seconds = float(processing_seconds)
     return message
 

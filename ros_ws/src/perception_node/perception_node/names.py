@@ -91,11 +91,14 @@ class Names:
         colors: names of ``scene_graph.COLORS``, ``UNKNOWN`` where none fits.
         names: unique.
         doubt: a sentence about the first block whose colour has no certain name; empty if all have.
+        distance, margin: the worst of all blocks, see :class:`ColorFit` [ΔE].
     """
 
     colors: tuple[str, ...]
     names: tuple[str, ...]
     doubt: str = ""
+    distance: float = 0.0
+    margin: float = np.inf
 
 
 def name_blocks(
@@ -112,11 +115,15 @@ def name_blocks(
     """
     colors = mean_colors(rgb, [segment.part for segment in segments])
     fit = explain_colors(colors)
-    known = tuple(
-        name if sure else UNKNOWN for name, sure in zip(fit.names, fit.known)
-    )
+    known = tuple(name if sure else UNKNOWN for name, sure in zip(fit.names, fit.known))
     names = unique_names(known, shapes, stacks)
-    return Names(known, names, _doubt(fit, colors, names))
+    return Names(
+        known,
+        names,
+        _doubt(fit, colors, names),
+        float(fit.distances.max(initial=0.0)),
+        float(fit.margins.min(initial=np.inf)),
+    )
 
 
 def _doubt(fit: ColorFit, colors: Array, names: Sequence[str]) -> str:

@@ -40,6 +40,7 @@ except ImportError:  # not among the PyPI packages
 
 from scene_graph import GraphStatus
 
+from .alike import Alike
 from .calibration import Calibration, LensModel
 from .continuity import Continuity
 from .conversions import (
@@ -119,6 +120,7 @@ class PerceptionNode(Node):
         self._lens: LensModel | None = None
         self._calibration = Calibration(self._values["rectified"], self._values["world_frame"])
         self._continuity = Continuity()
+        self._alike = Alike()
         self._recorder = _recorder(self._values["record"])
         self._status: GraphStatus | None = None
         self._last_image = 0.0
@@ -254,6 +256,7 @@ class PerceptionNode(Node):
         graph = perceived.graph
         if problem := self._continuity.calibration_problem(observation, graph, stamp):
             return self._perception.rejected(GraphStatus.BAD_IMAGE, problem)
+        perceived = self._alike.named(perceived, stamp)
         if perceived.status is GraphStatus.CONFIDENT:
             self._continuity.understand(observation, graph, stamp)
         elif perceived.status is GraphStatus.OCCLUDED and unchanged >= FROZEN:

@@ -21,6 +21,7 @@ from .observation import Observation
 from .places import Places, Points, RowOfPlaces
 from .places.occlusion import find_occlusion
 from .places.table import table_problem
+from .probability import evidence, load_parameters, probability
 from .segment import (
     SEGMENTERS,
     Segmenter,
@@ -29,6 +30,7 @@ from .segment import (
     check_segments,
     given_labels,
 )
+from .sight import sight_problem
 from .verdict import Verdict, judge, judge_empty, judge_fallen, with_grain
 from .visual_module.coordinates import Locator
 
@@ -43,12 +45,16 @@ class Perceived:
         message: a sentence saying why not; empty if it can.
         segments: which pixels the graph's objects are, those that lie left out; None if it did not
             come that far.
+        probability: that the whole graph is right, 0..1; 0 without objects.
+        evidence: what that follows from, see :mod:`.probability`; empty without objects.
     """
 
     graph: SceneGraph
     status: GraphStatus
     message: str = ""
     segments: Segments | None = None
+    probability: float = 0.0
+    evidence: tuple[float, ...] = ()
 
 
 class Perception:
@@ -74,6 +80,7 @@ class Perception:
         self.segmenter = segmenter
         self.make_places = places
         self.places = places(self.config.stack_positions)
+        self._probability = load_parameters()
         feet = np.array([place.position_world for place in self.places.places])
         self._volume = Volume.over(feet, self.config.column_height) if len(feet) else None
 
@@ -106,6 +113,8 @@ class Perception:
 
         if problem := table_problem(observation, segments, places):
             raise BadImageError(problem)
+        if problem := sight_problem(observation, segments, places, config):
+            raise BadImageError(problem)
         if len(segments) == 0:
             occlusion = find_occlusion(observation, segments, places, config)
             return refused(judge_empty(occlusion, config))
@@ -128,11 +137,13 @@ class Perception:
         occlusion = find_occlusion(observation, segments, places, config, blocks.poses)
         names = name_blocks(observation.rgb, segments, blocks.shapes, standing.stacks)
         graph = build_graph(observation, segments, occlusion, coordinates, standing, blocks, names)
-        if fallen:
-            graph = with_fallen(graph, fallen)
-        else:
+        if not fallen:
             verdict = judge(graph, occlusion, standing, blocks, names, config)
-        return Perceived(graph, *with_grain(verdict, observation.noise), segments)
+        known = evidence(graph, verdict.status, blocks, names, occlusion, observation.noise)
+        verdict = with_grain(verdict, observation.noise)
+        likely = probability(known, self._probability)
+        graph = with_fallen(graph, fallen) if fallen else graph
+        return Perceived(graph, *verdict, segments, likely, known)
 
     def _aligned(self, observation: Observation) -> Observation:
         """With edges where they are, where the places are seen and depth can be moved to colour."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Final
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,11 +15,16 @@ from scene_graph import BOX, CYLINDER, SPHERE
 #: A box shows at most this many faces, each of one brightness.
 _FACES: Final = 3
 #: Spread of brightness left within the faces, relative to the brightness, from which it is shading.
-_SHADED: Final = 0.03
+_SHADED: Final = 0.02
 #: A row is full that is at least this part of the widest row.
 _FULL: Final = 0.9
 #: Share of full rows from which a round block is a cylinder; a ball has 0.44 of them.
 _STRAIGHT: Final = 0.62
+#: Pixels whose channels' shares of the sum differ by more from the block's are of something else.
+_SAME_HUE: Final = 0.06
+#: So many pixels at the rim are mixtures, where that leaves at least this part of the mask [px].
+_RIM: Final = 1
+_LEFT: Final = 0.5
 #: Number of brightness values that are looked at.
 _SAMPLES: Final = 48
 
@@ -33,6 +39,7 @@ def shape_from_outline(rgb: NDArray[np.uint8], mask: NDArray[np.bool_]) -> str:
         rgb: shape (height, width, 3).
         mask: shape (height, width), not empty.
     """
+    mask = _of_one_hue(rgb, mask)
     light = np.sort(rgb[mask].max(axis=-1).astype(np.float64))
     samples = light[np.linspace(0, len(light) - 1, min(_SAMPLES, len(light))).round().astype(int)]
     faces = cluster_on_line(samples, min(_FACES, len(samples)))
@@ -42,3 +49,17 @@ def shape_from_outline(rgb: NDArray[np.uint8], mask: NDArray[np.bool_]) -> str:
     widths = mask.sum(axis=1)
     widths = widths[widths > 0]
     return CYLINDER if np.mean(widths >= _FULL * widths.max()) > _STRAIGHT else SPHERE
+
+
+def _of_one_hue(rgb: NDArray[np.uint8], mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The mask without what has another hue than most of it: what is beside an inexact one."""
+    values = rgb[mask].astype(np.float64) + 1.0
+    shares = values / values.sum(axis=1, keepdims=True)
+    same = np.abs(shares - np.median(shares, axis=0)).max(axis=1) < _SAME_HUE
+    kept = np.zeros_like(mask)
+    kept[mask] = same
+    inner = cv2.erode(kept.astype(np.uint8), np.ones((2 * _RIM + 1,) * 2, np.uint8)).astype(bool)
+    enough = _LEFT * np.count_nonzero(mask)
+    if np.count_nonzero(kept) < enough:
+        return mask
+    return inner if np.count_nonzero(inner) >= enough else kept

@@ -41,7 +41,7 @@ def given_labels(observation: Observation, volume: Volume | None = None) -> Segm
         )
     if volume is None or observation.depth is None or observation.camera is None:
         return Segments.from_labels(labels)
-    return Segments.from_labels(_snapped(labels, find_in_rgbd(observation, volume, may_miss=True)))
+    return Segments.from_labels(_snapped(labels, find_in_rgbd(observation, volume, labels > 0)))
 
 
 def _snapped(labels: NDArray[np.integer], found: Segments) -> NDArray[np.integer]:

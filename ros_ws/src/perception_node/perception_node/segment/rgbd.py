@@ -21,7 +21,17 @@ from perception_node.alignment import smear_of
 from perception_node.errors import BadImageError
 from perception_node.observation import Observation
 
-from .facets import LEAK, STRAY, Facets, Look, alike, find_facets, on_one_body, spread, without_leaks
+from .facets import (
+    LEAK,
+    STRAY,
+    Facets,
+    Look,
+    alike,
+    find_facets,
+    on_one_body,
+    spread,
+    without_leaks,
+)
 from .region import Region, look_at
 from .segments import Segments
 from .unseen import check_all_seen
@@ -73,12 +83,13 @@ UNSEEN: Final = 0.015
 
 
 def find_in_rgbd(
-    observation: Observation, volume: Volume | None, may_miss: bool = False
+    observation: Observation, volume: Volume | None, labelled: Mask | None = None
 ) -> Segments:
     """The blocks in a volume over the table.
 
     Args:
-        may_miss: whether what has no depth may be left out.
+        labelled: pixels that are known to be of blocks, and may be without depth; None: there are
+            none, shape (height, width).
 
     Raises:
         BadImageError: if the observation has no depth or no camera, or the volume is not known, or
@@ -98,8 +109,8 @@ def find_in_rgbd(
     region = look_at(observation, volume)
     if region is not None:
         look = Look.of(region.rgb, observation.noise)
-        if not may_miss:
-            check_all_seen(region, look, labels.size)
+        known = None if labelled is None else labelled[region.box]
+        check_all_seen(region, look, labels.size, known)
         labels[region.box] = _labels(region, look, volume, smear_of(observation.rgb.shape[1]))
     return Segments.from_labels(labels, source="camera/depth/image_raw")
 
@@ -156,9 +167,7 @@ def _labels(region: Region, look: Look, volume: Volume, smear: int) -> NDArray[n
     return labels
 
 
-def _take_strips(
-    labels: NDArray[np.uint16], pieces: Facets, region: Region, width: int
-) -> None:
+def _take_strips(labels: NDArray[np.uint16], pieces: Facets, region: Region, width: int) -> None:
     """Gives strips beside and above faces the labels of the blocks that they belong to.
 
     Of the blocks that they touch it is the one as high as they are: of one further down in a tower

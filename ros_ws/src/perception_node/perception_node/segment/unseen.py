@@ -24,13 +24,21 @@ SAME_HUE: Final = 0.03
 SAME_LIGHT: Final = 0.16
 
 
-def check_all_seen(region: Region, look: Look, picture_area: int) -> None:
+def check_all_seen(
+    region: Region, look: Look, picture_area: int, labelled: Mask | None = None
+) -> None:
     """Raises BadImageError if something that may be a block has no depth.
 
     Args:
         picture_area: of the picture that the region is a part of [px].
+        labelled: pixels that are known to be of a block, shape (h, w) of the region.
     """
-    rows, columns = np.nonzero(unseen(region, look, picture_area))
+    missed = unseen(region, look, picture_area)
+    if labelled is not None:
+        missed &= ~labelled
+        if np.count_nonzero(missed) < MIN_AREA * picture_area:
+            return
+    rows, columns = np.nonzero(missed)
     if len(rows):
         row = int(np.median(rows)) + region.box[0].start
         column = int(np.median(columns)) + region.box[1].start

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whether a picture shows the places at all: what is not seen is not free."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scene_graph import BlockPose, Place, base_name
+
+from .camera import PinholeCamera
+from .config import PerceptionConfig
+from .observation import Observation
+from .places import Places
+from .places.occlusion import box_region
+from .segment import Segments
+
+Mask = NDArray[np.bool_]
+
+#: At the foot of a place there is the table or a block; so wide and high is what is looked at [m].
+FOOT: Final = (0.04, 0.04, 0.02)
+#: Depth may be unknown at this share of it: cameras lose the edges of blocks.
+MAX_UNKNOWN: Final = 0.6
+#: Pixels that are no brighter than this and have no depth show nothing [0..255]; this share of a
+#: column may be so.
+BLACK: Final = 2
+MAX_BLACK: Final = 0.02
+#: Right above a column, so high, nothing is [m], but for as many stray pixels.
+ABOVE: Final = 0.03
+STRAY: Final = 10
+#: Depth is as exact as this [m].
+EXACT: Final = 0.008
+
+
+def sight_problem(
+    observation: Observation, segments: Segments, places: Places, config: PerceptionConfig
+) -> str:
+    """A sentence about the first place, or block, that is not wholly in the picture; or nothing.
+
+    Nothing is said without depth, camera or places.
+    """
+    depth, camera = observation.depth, observation.camera
+    if depth is None or camera is None or not places.places:
+        return ""
+    with np.errstate(invalid="ignore"):
+        known = (depth > 0.0) & np.isfinite(depth)
+    shown = known | (segments.label_image > 0)
+    black = ~shown & (observation.rgb.max(axis=2) <= BLACK)
+    for place in places.places:
+        name = base_name(place.index)
+        if not _inside(camera, _box(place, 0.0, FOOT)):
+            return f"{name} is not in the picture; turn the camera, or correct its calibration"
+        if _share(~shown, box_region(camera, _box(place, 0.0, FOOT))) > MAX_UNKNOWN:
+            return (
+                f"whether anything stands on {name} is not known, as there is no depth; check the "
+                "depth camera, and that nothing is before it"
+            )
+        width = 2.0 * config.column_half_width
+        column = _box(place, 0.0, (width, width, config.column_height))
+        if _share(black, box_region(camera, column)) > MAX_BLACK:
+            return (
+                f"part of what is over {name} is black and has no depth; is the lens partly "
+                "covered, or part of the picture lost?"
+            )
+        labelled = segments.label_image > 0
+        if _is_higher(place, known, labelled, observation, camera, config):
+            return (
+                f"what stands on {name} is higher than {config.column_height:g} m; set "
+                "column_height to the height of the highest tower"
+            )
+    return _cut_off(segments)
+
+
+def _box(place: Place, lift: float, size: tuple[float, float, float]) -> BlockPose:
+    """A box that stands so high over a place."""
+    x, y, z = place.position_world
+    return BlockPose((x, y, z + lift + 0.5 * size[2]), 0.0, size)
+
+
+def _inside(camera: PinholeCamera, box: BlockPose) -> bool:
+    half = 0.5 * np.array(box.size)
+    corners = np.array([[i, j, -1.0] for i in (-1.0, 1.0) for j in (-1.0, 1.0)]) * half
+    pixels = camera.project(corners + box.position_world)
+    with np.errstate(invalid="ignore"):
+        return bool(((pixels >= 0) & (pixels <= (camera.width - 1, camera.height - 1))).all())
+
+
+def _is_higher(
+    place: Place,
+    known: Mask,
+    labelled: Mask,
+    observation: Observation,
+    camera: PinholeCamera,
+    config: PerceptionConfig,
+) -> bool:
+    """Whether a stack reaches to the top of a column and goes on beyond: not an arm over it."""
+    assert observation.depth is not None
+    width = 2.0 * config.column_half_width
+    ends = _box(place, config.column_height - ABOVE, (width, width, 2.0 * ABOVE))
+    rows, columns = np.nonzero(box_region(camera, ends) & known)
+    rays = camera.rays_world(np.stack([columns, rows], axis=-1))
+    points = camera.position_world + rays * observation.depth[rows, columns, None]
+    off = points - place.position_world
+    inside = np.abs(off[:, :2]).max(axis=1, initial=0.0) < config.column_half_width
+    higher = off[:, 2] - config.column_height
+    beyond = inside & (higher > EXACT) & (higher < ABOVE)
+    below = inside & (higher > -EXACT) & (higher <= EXACT) & labelled[rows, columns]
+    return min(int(np.count_nonzero(beyond)), int(np.count_nonzero(below))) > STRAY
+
+
+def _cut_off(segments: Segments) -> str:
+    """A sentence about a block at the picture's edge, beyond which there may be more."""
+    for segment in segments:
+        part = segment.part
+        for side, edge in (
+            ("left", part[:, 0]),
+            ("right", part[:, -1]),
+            ("upper", part[0]),
+            ("lower", part[-1]),
+        ):
+            if edge.any():
+                return (
+                    f"a block reaches the {side} edge of the picture, so it is not known what is "
+                    "beyond; turn the camera, or move it away"
+                )
+    return ""
+
+
+def _share(mask: Mask, region: Mask) -> float:
+    return int(np.count_nonzero(mask & region)) / max(1, int(np.count_nonzero(region)))
