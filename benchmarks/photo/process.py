@@ -184,7 +184,8 @@ def _tone(kelvin: float) -> tuple[float, float, float]:
     """Light of a black body, about, of equal brightness; white at 6500 K."""
     warm = (6500.0 - kelvin) / 3000.0
     tone = np.clip([1.0 + 0.18 * warm, 1.0, 1.0 - 0.40 * warm], 0.2, 1.4)
-    return tuple(float(c) for c in tone / tone.mean())
+    red, green, blue = (float(c) for c in tone / tone.mean())
+    return red, green, blue
 
 
 def _outputs(scene: Any, folder: Path) -> None:

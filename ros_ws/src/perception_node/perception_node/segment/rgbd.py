@@ -195,7 +195,9 @@ def _take_strips(labels: NDArray[np.uint16], pieces: Facets, region: Region, wid
             spread(labels, pieces.ids > 0, links, may)
 
 
-def _grow_down(labels: NDArray[np.uint16], foot: Mask, look: Look, points: Array) -> None:
+def _grow_down(
+    labels: NDArray[np.uint16], foot: Mask, look: Look, points: NDArray[np.floating]
+) -> None:
     """Gives the pixels at a block's foot, too low to tell from the table by depth, its label.
 
     They are below it, not before it on the table.
