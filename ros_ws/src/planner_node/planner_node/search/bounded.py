@@ -87,7 +87,7 @@ def _least(problem: Problem, limits: Limits) -> int:
     def solved(blocks: tuple[int, ...]) -> int:
         part = {names[block] for block in blocks}
         initial = _only(problem.initial, part)
-        needed = Goal(wanted.relations_among(part))
+        needed = Goal(wanted.relations_among(part), rows=problem.goal.rows)
         if needed.holds(initial):
             return 0
         return len(patterns_both_ends(Problem(initial, needed), limits.of_a_part())) - 1
