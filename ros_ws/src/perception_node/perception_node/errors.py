@@ -14,6 +14,14 @@ class BadImageError(PerceptionError):
     """An image, segmentation, depth or camera that cannot be used."""
 
 
+class UnmeasuredError(BadImageError):
+    """A block of which too little depth is known; ``index`` is that of its segment."""
+
+    def __init__(self, message: str, index: int) -> None:
+        super().__init__(message)
+        self.index = index
+
+
 class NotUprightError(PerceptionError):
     """A block none of whose faces is upright; ``index`` is that of its segment."""
 

@@ -13,11 +13,13 @@ from scene_graph import GraphStatus, SceneGraph
 from .alignment import aligned
 from .blocks import centres, find_blocks, measure
 from .config import PerceptionConfig
+from .covered import Seen, measure_seen, poorly_seen
 from .errors import BadImageError, NotUprightError, PerceptionError
 from .graph import build_graph
+from .hiding import Hidden, find_hidden
 from .names import color_names, mean_colors, name_blocks
 from .observation import Observation
-from .places import Places, Points, RowOfPlaces
+from .places import Places, Points, RowOfPlaces, TwoRows
 from .places.occlusion import find_occlusion
 from .places.table import table_problem
 from .segment import (
@@ -93,7 +95,7 @@ class Perception:
 
     def _perceive(self, observation: Observation) -> Perceived:
         """Raises PerceptionError if the observation cannot be used."""
-        config, places = self.config, self.places
+        config, places = self.config, self.places.seen_by(observation.camera)
         observation.check_values()
         taken, observation = observation, self._aligned(observation)
         segments = self._segments(observation)
@@ -107,22 +109,41 @@ class Perception:
         if len(segments) == 0:
             occlusion = find_occlusion(observation, segments, places, config)
             return refused(judge_empty(occlusion, config))
-        coordinates = self.locator.locate(self.locator.images(observation.rgb, segments))
         try:
-            surfaces = measure(observation, segments)
+            seen = self._seen(observation, segments, places)
         except NotUprightError as error:
             occlusion = find_occlusion(observation, segments, places, config)
             parts = [segment.part for segment in segments]
             color = color_names(mean_colors(observation.rgb, parts))[error.index]
             sentence = f"the {color} block {error}"
             return refused(judge_not_upright(sentence, occlusion, config))
-        standing = places.stand(observation, segments, coordinates, centres(surfaces))
-        blocks = find_blocks(observation, segments, standing, surfaces)
+        while True:
+            segments = seen.segments
+            coordinates = self.locator.locate(self.locator.images(observation.rgb, segments))
+            standing = places.stand(observation, segments, coordinates, centres(seen.surfaces))
+            blocks = find_blocks(
+                *(observation, segments, standing, seen.surfaces),
+                *(seen.partly, config.smallest_block),
+            )
+            if not (poor := poorly_seen(seen, blocks, coordinates.iou, config)):
+                break
+            seen = seen.without(poor, observation, places.places)
         occlusion = find_occlusion(observation, segments, places, config, blocks.poses)
+        hidden: tuple[Hidden, ...] = ()
+        if isinstance(places, TwoRows):
+            hidden = find_hidden(observation, segments, standing, blocks, seen.glimpses, config)
         names = name_blocks(observation.rgb, segments, blocks.shapes, standing.stacks)
-        graph = build_graph(observation, segments, occlusion, coordinates, standing, blocks, names)
-        verdict = judge(graph, occlusion, standing, blocks, names, config)
+        graph = build_graph(
+            observation, segments, occlusion, coordinates, standing, blocks, names, hidden
+        )
+        verdict = judge(graph, occlusion, standing, blocks, names, config, hidden)
         return Perceived(graph, *with_grain(verdict, observation.noise), segments)
+
+    def _seen(self, observation: Observation, segments: Segments, places: Places) -> Seen:
+        """The blocks measured; of two rows without those that are mostly covered."""
+        if isinstance(places, TwoRows) and observation.depth is not None:
+            return measure_seen(observation, segments, places.places)
+        return Seen(segments, measure(observation, segments))
 
     def _aligned(self, observation: Observation) -> Observation:
         """With edges where they are, where the places are seen and depth can be moved to colour."""

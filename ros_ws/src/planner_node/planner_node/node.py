@@ -42,14 +42,19 @@ from .loop import (
     MotionLink,
     Outcome,
     Progress,
+    Scene,
     SceneWatch,
     Status,
+    decided,
+    meaning,
     plan_for,
     plan_in,
+    uncover_in,
 )
 from .loop.account import in_the_view
 from .parameters import PARAMETERS
 from .plan_publisher import PlanPublisher
+from .search import SearchResult
 from .settings import LATENT, Settings
 
 if TYPE_CHECKING:
@@ -175,8 +180,7 @@ class PlannerNode(Node):
         if self._latent is not None:
             goal, found = self._latent.plan(request, scene.stacks, scene.stamp)
         else:
-            goal = resolve(scene.stacks)
-            found = plan_in(scene, goal, self._settings, self._is_shut_down)
+            goal, found = self._plan_in(scene, resolve)
         plan = plan_for(scene, goal, found, self._scenes.now())
         response.expanded, response.planning_seconds = found.expanded, found.seconds
         response.plan, response.states = plan_to_message(plan), predicted_to_messages(plan)
@@ -186,6 +190,8 @@ class PlannerNode(Node):
             return
         response.status = int(Status.SUCCESS)
         told = f"{len(plan.moves)} moves to '{goal}'"
+        if scene.hidden:
+            told = f"{len(plan.moves)} moves to look: '{request.goal}' is planned for afterwards"
         response.message = "; ".join(filter(None, (told, found.note)))
         if request.execute:
             self._check_conflict()
@@ -193,6 +199,19 @@ class PlannerNode(Node):
             with self._claimed(claim, self._motion.check_free):
                 self._motion.start(plan)
             response.message += f"; published as plan {plan.plan_id}"
+
+    def _plan_in(
+        self, scene: Scene, resolve: Callable[[Stacks], Goal]
+    ) -> tuple[Goal, SearchResult]:
+        """A plan to the goal, or where blocks hide others one that uncovers them."""
+        if not scene.hidden:
+            goal = resolve(scene.stacks).on(scene.rows)
+            return goal, plan_in(scene, goal, self._settings, self._is_shut_down)
+        goal = meaning(resolve, scene)
+        if goal is not None and decided(goal, scene) and goal.holds(scene.stacks):
+            return goal, plan_in(scene, goal, self._settings, self._is_shut_down)
+        found = uncover_in(scene, goal, self._settings, self._is_shut_down)
+        return goal or Goal(()), found
 
     def _on_achieve_goal(self, handle: ServerGoalHandle) -> AchieveGoal.Result:
         request, feedback = handle.request, FeedbackWriter()

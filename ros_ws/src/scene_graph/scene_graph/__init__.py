@@ -3,7 +3,7 @@
 
 from .errors import ImpossibleMoveError, InconsistentRelationsError, SceneGraphError
 from .graph import GraphStatus, SceneGraph
-from .hidden import HIDDEN, hidden_name, hidden_places, is_hidden
+from .hidden import HIDDEN, hidden_name, hidden_place, hidden_places, is_hidden
 from .moves import Move, all_moves
 from .objects import (
     BASIC_COLORS,
@@ -88,6 +88,7 @@ __all__ = [
     "format_stacks",
     "front_relations",
     "hidden_name",
+    "hidden_place",
     "hidden_places",
     "in_rows",
     "is_hidden",

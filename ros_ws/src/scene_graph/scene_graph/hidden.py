@@ -1,18 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """What stands in a graph for blocks that blocks in front of them hide (5.4.3).
 
-There is one such object at most on a place. It stands where blocks may be that are not seen: on the
+Such an object stands where blocks may be that are not seen: on the
 place, under a block that is seen, or on top of one. Its size is that of the hidden space.
 """
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from .places import base_name
 
 #: Colour of what is hidden.
 HIDDEN: Final = "hidden"
+_NAME: Final = re.compile(r"hidden_stack(\d+)(_\d+)?")
 
 
 def hidden_name(index: int) -> str:
@@ -22,7 +24,13 @@ def hidden_name(index: int) -> str:
 
 def is_hidden(name: str) -> bool:
     """Whether a name is not that of a block, but of what is hidden on a place."""
-    return name.startswith(f"{HIDDEN}_")
+    return hidden_place(name) is not None
+
+
+def hidden_place(name: str) -> int | None:
+    """The place on which something of this name stands for hidden blocks; None of a block."""
+    match = _NAME.fullmatch(name)
+    return int(match.group(1)) if match else None
 
 
 def hidden_places(stacks: tuple[tuple[str, ...], ...]) -> tuple[int, ...]:

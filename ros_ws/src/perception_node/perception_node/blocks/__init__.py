@@ -2,6 +2,7 @@
 """Blocks: their shapes, and where depth is known their poses and sizes."""
 
 from .blocks import Blocks, centres, find_blocks, measure
+from .measure import BlockSurface
 from .pose import MeasuredBlock
 
-__all__ = ["Blocks", "MeasuredBlock", "centres", "find_blocks", "measure"]
+__all__ = ["BlockSurface", "Blocks", "MeasuredBlock", "centres", "find_blocks", "measure"]

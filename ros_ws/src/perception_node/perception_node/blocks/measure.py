@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception_node.camera import PinholeCamera
-from perception_node.errors import BadImageError, NotUprightError
+from perception_node.errors import BadImageError, NotUprightError, UnmeasuredError
 from perception_node.segment import Segments
 from scene_graph import BOX, CYLINDER
 
@@ -62,6 +62,7 @@ class BlockSurface:
         covariance: of x, y, yaw, the two widths, low and high, shape (7, 7).
         tilt: angle between its front and the vertical [rad].
         rival: a shape that explains it nearly as well; empty: there is none.
+        seen_low: z of about the lowest of its points that are seen [m].
     """
 
     shape: str
@@ -73,6 +74,7 @@ class BlockSurface:
     covariance: Array
     tilt: float = 0.0
     rival: str = ""
+    seen_low: float = 0.0
 
 
 def measure_blocks(
@@ -93,20 +95,21 @@ def measure_blocks(
         edge_doubt: see :class:`Observation` [px].
 
     Raises:
-        BadImageError: if too little depth of a block is known; the sentence names its label.
+        UnmeasuredError: if too little depth of a block is known; the sentence names its label.
         NotUprightError: if enough is known, but it is no block that stands upright.
     """
     above = covering(segments, depth, camera)
     evidence = []
-    for segment, covers in zip(segments, above):
+    for index, (segment, covers) in enumerate(zip(segments, above)):
         try:
             evidence.append(
                 evidence_of(segment, segments, depth, camera, noise, covers, sure, edge_doubt)
             )
         except BadImageError as error:
-            raise BadImageError(
+            raise UnmeasuredError(
                 f"the depth of the object with label {segment.label} cannot be used: {error}; "
-                "check the depth camera"
+                "check the depth camera",
+                index,
             ) from error
     surfaces = []
     fits, rivals = _best(evidence, noise)
@@ -265,6 +268,7 @@ def _surface(best: Fit, evidence: Evidence) -> BlockSurface:
     return BlockSurface(
         best.model.shape, (x, y), yaw, (along, across), low, high, covariance,
         _tilt(best, evidence) if best.model.shape == BOX else 0.0,
+        seen_low=float(np.quantile(evidence.points[:, 2], 0.02)),
     )  # fmt: skip
 
 

@@ -34,8 +34,10 @@ from .plan import Plan, plan_for
 from .plan_run import PlanRun
 from .plan_watch import PlanWatch
 from .possible_moves import PossibleMoves
+from .recall import recall
 from .report import Outcome, Progress, Stage, Status
 from .scene import Scene
+from .scene_plan import decided, meaning
 from .scene_watch import SceneWatch
 from .teller import Teller
 
@@ -124,8 +126,8 @@ class ClosedLoop:
         with self._timed("perceive_seconds"):
             resolve = read()
         scene = self._look(Stage.PERCEIVING, "waiting for a confident scene graph")
-        goal = resolve(scene.stacks)
         self._note(initial=scene)
+        scene, goal = self._uncovered(scene, resolve)
         plans = 0
         while not goal.holds(scene.stacks):
             if plans and not self._possible.just_refused:
@@ -140,14 +142,42 @@ class ClosedLoop:
                 scene = self._look(Stage.PERCEIVING, "looking again", goal.names)
                 continue
             if not plans:
-                self._note(moves_planned=len(found.moves))
+                self._note(moves_planned=self.outcome.moves_planned + len(found.moves))
             plans += 1
             scene = self._work_off(scene, goal, found)
+            if scene.hidden:
+                scene, goal = self._uncovered(scene, resolve)
         seen = format_stacks(scene.stacks)
-        if not plans:
+        if not plans and not self.outcome.moves_planned:
             return Status.ALREADY_TRUE, f"nothing to do: '{goal}' holds in {seen}"
         told = "".join(f"; {sentence}" for sentence in dict.fromkeys(self._remarks))
         return Status.SUCCESS, f"the camera confirms '{goal}': {seen}{told}"
+
+    def _uncovered(
+        self, scene: Scene, resolve: Callable[[Stacks], Goal]
+    ) -> tuple[Scene, Goal]:
+        """The scene once all that matters to the goal is seen, and the goal in it (5.4.3).
+
+        Blocks that hide others are moved aside first.
+        """
+        attempts = 0
+        while scene.hidden:
+            goal = meaning(resolve, scene)
+            if goal is not None and decided(goal, scene) and goal.holds(scene.stacks):
+                return scene, goal
+            if attempts and not self._possible.just_refused:
+                self._count_replan(scene)
+            self._tell(Stage.PLANNING, f"searching what to move aside in {format_stacks(scene.stacks)}")
+            with self._timed("plan_seconds"):
+                found = self._possible.uncover(scene, goal)
+            self._tell(Stage.PLANNING, found.note)
+            if not attempts:
+                self._remarks.append(found.note)
+                self._note(moves_planned=self.outcome.moves_planned + len(found.moves))
+            attempts += 1
+            plan = plan_for(scene, goal or Goal(()), found, self._scenes.now())
+            scene = self._carry_out(plan, plan.goal)
+        return scene, resolve(scene.stacks).on(scene.rows)
 
     def _work_off(self, scene: Scene, goal: Goal, found: SearchResult) -> Scene:
         """Has what was found carried out, all at once or with a look after each move."""
@@ -179,7 +209,13 @@ class ClosedLoop:
         reason = "; ".join(self.outcome.causes[before:])
         try:
             message = reason or "looking whether the goal is reached"
-            scene = self._look(Stage.CONFIRMING, message, goal.names, moved=True)
+            scene = self._look(
+                Stage.CONFIRMING,
+                message,
+                goal.names,
+                moved=True,
+                recall=lambda seen: recall(seen, plan, end.report),
+            )
         except _UNSEEN as error:
             if failure is None:
                 raise
@@ -208,8 +244,12 @@ class ClosedLoop:
         message: str,
         needed: frozenset[str] = frozenset(),
         moved: bool = False,
+        recall: Callable[[Scene], Scene] = lambda scene: scene,
     ) -> Scene:
-        """The scene after the request and the last motion, with the ``needed`` objects in it."""
+        """The scene after the request and the last motion, with the ``needed`` objects in it.
+
+        Blocks that others hide are put in by ``recall``.
+        """
         self._tell(stage, message)
         with self._timed("perceive_seconds"):
             self._arm.settle(moved)
@@ -218,7 +258,7 @@ class ClosedLoop:
                 self._tell(stage, message)
             after = max(self._requested, self._motion.last_end)
             try:
-                scene = self._scenes.wait(self._stopped, after, needed)
+                scene = self._scenes.wait(self._stopped, after, needed, recall)
             except CancelledError:
                 self._check()
                 raise

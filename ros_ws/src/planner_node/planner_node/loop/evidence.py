@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-from scene_graph import GraphStatus, Place, SceneObject
+from scene_graph import GraphStatus, Place, SceneObject, hidden_place, is_hidden
 
 from .expectation import RESTING_TOLERANCE, Expectation, Point, Rest
 from .scene import Sighting
@@ -104,19 +104,27 @@ class Evidence:
         if not graph.objects:
             return ()
         self._fresh.clear()
-        seen = {item.name: item for item in graph.objects}
+        seen = {item.name: item for item in graph.objects if not is_hidden(item.name)}
+        # What is hidden there may be any block, and is none that is new.
+        hidden = {hidden_place(item.name) for item in graph.objects}
         states = [self.expectation.at(step) for step in steps]
         # It may be in the hand before that is heard of.
         about_to_rise = self.expectation.picked(steps[-1])
         for name in states[0]:
             rests = [state[name] for state in states]
+            if is_hidden(name):
+                continue
             if None in rests:  # in the hand, or about to be
                 self._suspicions.pop(name, None)
                 continue
             options = tuple(rest for rest in rests if rest is not None)
+            if name not in seen and any(rest.stack in hidden for rest in options):
+                continue
             self._weigh_block(name, seen.get(name), options, graph.places, about_to_rise, steps)
-        for item in graph.objects:
-            if item.name not in states[0] and _over_a_place(item, graph.places):
+        unknown = {hidden_place(name) for name in states[0]}
+        visible = [place for place in graph.places if place.index not in unknown]
+        for item in seen.values():
+            if item.name not in states[0] and _over_a_place(item, visible):
                 finding = Finding(item.name, Kind.FOREIGN, None, item.position_world)
                 self._suspect(finding, steps)
         for name in [name for name in self._suspicions if name not in states[0]]:

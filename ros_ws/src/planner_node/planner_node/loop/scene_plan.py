@@ -5,11 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from scene_graph import NOT, Stacks
+
+from ..errors import AmbiguousObjectError, GoalImageError, UnknownObjectError
 from ..goals.goal import Goal
 from ..search import SearchResult
+from ..search.limits import Limits
 from ..search.possible import Exclusion
-from ..search.stability import stability_of
+from ..search.stability import Stability, stability_of
 from ..search.stable import make_stable_plan
+from ..search.uncover import Sight, uncover
 from ..settings import IGNORE, REQUIRE, Settings
 from .scene import Scene
 
@@ -29,16 +34,59 @@ def plan_in(
     Raises:
         PlannerError: as :func:`make_stable_plan`.
     """
-    stability = None
-    if settings.stability != IGNORE:
-        required = settings.stability == REQUIRE
-        stability = stability_of(scene.graph.objects, required, settings.max_width_ratio)
     return make_stable_plan(
         scene.stacks,
         goal,
-        stability,
+        _stability(scene, settings),
         exclusions,
         settings.max_expansions,
         cancelled,
         settings.search_algorithm,
     )
+
+
+def uncover_in(
+    scene: Scene,
+    goal: Goal | None,
+    settings: Settings,
+    cancelled: Callable[[], bool],
+    exclusions: Sequence[Exclusion] = (),
+) -> SearchResult:
+    """The fewest moves after which all that is hidden can be seen; its note says why (5.4.3).
+
+    Args:
+        goal: as far as it is known what it means; of equally short ways the one is taken that
+            leaves the fewest of its relations open.
+
+    Raises:
+        PlannerError: as :func:`uncover`.
+    """
+
+    def rate(stacks: Stacks) -> float:
+        return -len(goal.fulfilled_by(stacks)) if goal else 0.0
+
+    heights = {item.name: item.size[2] for item in scene.graph.objects}
+    limits = Limits(scene.stacks, goal or Goal(()), settings.max_expansions, cancelled)
+    sight, stability = Sight(scene.graph.places, heights), _stability(scene, settings)
+    return uncover(scene.stacks, sight, limits, exclusions, stability, rate)
+
+
+def meaning(resolve: Callable[[Stacks], Goal], scene: Scene) -> Goal | None:
+    """What a goal means where some blocks are hidden; None if it may be of these."""
+    try:
+        return resolve(scene.seen_stacks).on(scene.rows)
+    except (UnknownObjectError, AmbiguousObjectError, GoalImageError):
+        return None
+
+
+def decided(goal: Goal, scene: Scene) -> bool:
+    """Whether hidden blocks have no say in whether a goal holds: it is of blocks that are seen."""
+    positive = all(not item.predicate.startswith(NOT) for item in goal.relations)
+    return not goal.counts and positive and goal.names <= set(scene.names)
+
+
+def _stability(scene: Scene, settings: Settings) -> Stability | None:
+    if settings.stability == IGNORE:
+        return None
+    required = settings.stability == REQUIRE
+    return stability_of(scene.graph.objects, required, settings.max_width_ratio)

@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Blocks that others cover, and those of which too little is seen to say what they are (5.4.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from scene_graph import Place
+
+from .blocks import Blocks, BlockSurface, measure
+from .config import PerceptionConfig
+from .errors import BadImageError, NotUprightError, UnmeasuredError
+from .observation import Observation
+from .segment import Segments
+
+Mask = NDArray[np.bool_]
+
+#: What is nearer to the camera than a neighbouring pixel by more than this covers what is there [m].
+NEARER: Final = 0.02
+#: So far beside the middle of a place a block on it is seen [m].
+REACH: Final = 0.05
+#: Lower than this over the table is the table [m].
+MIN_HEIGHT: Final = 0.003
+#: A block and what covers it are this near to one another in the picture [px].
+RIM: Final = 3
+#: Blocks whose middles are nearer than this, seen from above, are of one stack [m].
+APART: Final = 0.08
+#: A block is covered that has so many pixels beside something nearer.
+MIN_EDGE: Final = 3
+
+
+@dataclass(frozen=True)
+class Glimpse:
+    """A block of which too little is seen.
+
+    Attributes:
+        place: index of the place that it is on.
+        low, high: ends of what is seen of it [m].
+    """
+
+    place: int
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Seen:
+    """The blocks of a picture that can be measured, and the others.
+
+    Attributes:
+        segments, surfaces: of those that can, in the same order.
+        covered: their labels, as far as something nearer covers a part of them.
+        glimpses: of the others.
+    """
+
+    segments: Segments
+    surfaces: tuple[BlockSurface, ...]
+    covered: frozenset[int] = frozenset()
+    glimpses: tuple[Glimpse, ...] = ()
+
+    @property
+    def partly(self) -> frozenset[int]:
+        """The indices of those of which something nearer covers a part."""
+        return frozenset(
+            index for index, item in enumerate(self.segments) if item.label in self.covered
+        )
+
+    def without(
+        self, labels: Collection[int], observation: Observation, places: tuple[Place, ...]
+    ) -> Seen:
+        """The same, some blocks of which are only glimpsed after all."""
+        kept = [item.label not in labels for item in self.segments]
+        gone = [item for item, keep in zip(self.segments, kept) if not keep]
+        return Seen(
+            _only(self.segments, kept),
+            tuple(item for item, keep in zip(self.surfaces, kept) if keep),
+            self.covered - frozenset(labels),
+            (*self.glimpses, *(_glimpse(item.part, observation, places) for item in gone)),
+        )
+
+
+def measure_seen(
+    observation: Observation, segments: Segments, places: tuple[Place, ...]
+) -> Seen:
+    """Measures the blocks; those that are covered and cannot be measured are only glimpsed.
+
+    Raises:
+        BadImageError, NotUprightError: as :func:`.blocks.measure` of a block that is not covered.
+    """
+    segments, glimpses = _with_slivers(observation, segments, places)
+    covered = _covered(observation, segments)
+    while True:
+        try:
+            surfaces = measure(observation, segments)
+        except (UnmeasuredError, NotUprightError) as error:
+            poor = segments.blocks[error.index]
+            if poor.label not in covered:
+                raise
+            glimpses.append(_glimpse(poor.part, observation, places))
+            segments = _only(segments, [item is not poor for item in segments])
+        else:
+            return Seen(segments, surfaces, covered, tuple(glimpses))
+
+
+def poorly_seen(
+    seen: Seen, blocks: Blocks, iou: NDArray[np.float64], config: PerceptionConfig
+) -> tuple[int, ...]:
+    """Labels of the blocks that others cover and of which too little is seen to tell of them.
+
+    Args:
+        iou: how well the visual module reproduces each (A.2.5), shape (N,).
+    """
+    return tuple(
+        segment.label
+        for segment, block, share in zip(seen.segments, blocks.measured, iou)
+        if segment.label in seen.covered
+        and (
+            block.rival
+            or max(block.deviation[:3]) > config.limits.doubt
+            or share < config.min_confidence
+        )
+    )
+
+
+def _only(segments: Segments, kept: list[bool]) -> Segments:
+    blocks = tuple(item for item, keep in zip(segments, kept) if keep)
+    return replace(segments, blocks=blocks)
+
+
+def _covered(observation: Observation, segments: Segments) -> frozenset[int]:
+    """Labels of the blocks beside whose pixels a block of another stack is seen that is nearer."""
+    depth = _known_depth(observation)
+    found = []
+    middles = {item.label: _middle(item.part, observation) for item in segments}
+    for item in segments:
+        left, top, width, height = cv2.boundingRect(item.part.astype(np.uint8))
+        box = np.s_[
+            max(0, top - RIM) : top + height + RIM, max(0, left - RIM) : left + width + RIM
+        ]
+        part = item.part[box]
+        here = np.where(part, depth[box], 0.0).astype(np.float32)
+        around = cv2.dilate(here, np.ones((2 * RIM + 1,) * 2, np.uint8))
+        labels = segments.label_image[box]
+        away = [
+            label
+            for label, middle in middles.items()
+            if np.hypot(*(middle - middles[item.label])) > APART
+        ]
+        beside = (around > 0.0) & ~part & np.isin(labels, away)
+        if np.count_nonzero(beside & (depth[box] < around - NEARER)) >= MIN_EDGE:
+            found.append(item.label)
+    return frozenset(found)
+
+
+def _middle(part: Mask, observation: Observation) -> NDArray[np.float64]:
+    """Where the pixels of a block are on the table, (x, y) [m]; infinite where none has depth."""
+    points = _points(part, observation)
+    return np.median(points[:, :2], axis=0) if len(points) else np.full(2, np.inf)
+
+
+def _points(part: Mask, observation: Observation) -> NDArray[np.float64]:
+    """Where pixels are in world, those without depth left out, shape (n, 3) [m]."""
+    camera, depth = observation.camera, _known_depth(observation)
+    assert camera is not None
+    rows, columns = np.nonzero(part & np.isfinite(depth))
+    rays = camera.rays_world(np.stack([columns, rows], axis=-1))
+    return np.asarray(camera.position_world + rays * depth[rows, columns, None])
+
+
+def _with_slivers(
+    observation: Observation, segments: Segments, places: tuple[Place, ...]
+) -> tuple[Segments, list[Glimpse]]:
+    """Strips of blocks too thin to be found, which get labels of their own, and are glimpsed."""
+    depth, camera = _known_depth(observation), observation.camera
+    assert camera is not None
+    labelled = segments.label_image > 0
+    near = np.where(labelled, depth, np.inf).astype(np.float32)
+    nearest = cv2.erode(near, np.ones((2 * RIM + 1,) * 2, np.uint8))
+    rows, columns = np.nonzero(~labelled & np.isfinite(depth))
+    rays = camera.rays_world(np.stack([columns, rows], axis=-1))
+    points = camera.position_world + rays * depth[rows, columns, None]
+    feet = np.array([place.position_world for place in places])
+    off = np.abs(points[:, None, :2] - feet[None, :, :2]).max(axis=-1)
+    over = (off.min(axis=1) < REACH) & (points[:, 2] > feet[:, 2].min() + MIN_HEIGHT)
+    strips = np.zeros(depth.shape, np.uint8)
+    strips[rows[over], columns[over]] = 1
+    count, numbers = cv2.connectedComponents(strips, connectivity=8)
+    if count == 1:
+        return segments, []
+    covered = strips.astype(bool) & (nearest < depth - NEARER)
+    labels, glimpses = segments.label_image.astype(np.int32), []
+    free = int(labels.max()) + 1
+    for number in np.unique(numbers[covered]):
+        part = numbers == number
+        glimpses.append(_glimpse(part, observation, places))
+        labels[part] = free
+        free += 1
+    return replace(segments, label_image=labels), glimpses
+
+
+def _glimpse(part: Mask, observation: Observation, places: tuple[Place, ...]) -> Glimpse:
+    """Where pixels are: on the place that they are nearest to."""
+    points = _points(part, observation)
+    if len(points) == 0:
+        raise BadImageError("none of the pixels of a block has depth; check the depth camera")
+    feet = np.array([place.position_world for place in places])
+    away = np.linalg.norm(feet[:, :2] - np.median(points[:, :2], axis=0), axis=1)
+    low, high = np.percentile(points[:, 2], [2.0, 98.0])
+    return Glimpse(int(away.argmin()), float(low), float(high))
+
+
+def _known_depth(observation: Observation) -> NDArray[np.float64]:
+    """Depth, infinite where it is not known [m]."""
+    depth = observation.depth
+    assert depth is not None
+    with np.errstate(invalid="ignore"):
+        return np.where(np.isfinite(depth) & (depth > 0.0), depth, np.inf).astype(np.float64)
