@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import Final
 
 import cv2
@@ -17,7 +18,7 @@ from .blocks import Blocks, BlockSurface, measure
 from .config import PerceptionConfig
 from .errors import BadImageError, NotUprightError, UnmeasuredError
 from .observation import Observation
-from .segment import Segments
+from .segment import Segment, Segments
 
 Mask = NDArray[np.bool_]
 
@@ -31,6 +32,8 @@ MIN_HEIGHT: Final = 0.003
 RIM: Final = 3
 #: Blocks whose middles are nearer than this, seen from above, are of one stack [m].
 APART: Final = 0.08
+#: Blocks whose axes are nearer than this, and that share heights, are one [m].
+SAME_SPOT: Final = 0.03
 #: A block is covered that has so many pixels beside something nearer.
 MIN_EDGE: Final = 3
 
@@ -105,7 +108,39 @@ def measure_seen(
             glimpses.append(_glimpse(poor.part, observation, places))
             segments = _only(segments, [item is not poor for item in segments])
         else:
-            return Seen(segments, surfaces, covered, tuple(glimpses))
+            pair = _one_in_two(segments, surfaces, covered)
+            if pair is None:
+                return Seen(segments, surfaces, covered, tuple(glimpses))
+            segments = _joined(segments, *pair)
+            covered = covered | {pair[0]}
+
+
+def _one_in_two(
+    segments: Segments, surfaces: Sequence[BlockSurface], covered: frozenset[int]
+) -> tuple[int, int] | None:
+    """The labels of two that can only be faces of one block, as both are at the same spot."""
+    for i, j in combinations(range(len(surfaces)), 2):
+        one, other = surfaces[i], surfaces[j]
+        labels = segments.blocks[i].label, segments.blocks[j].label
+        shared = min(one.high, other.high) - max(one.low, other.low)
+        lower = min(one.high - one.low, other.high - other.low)
+        away = float(np.hypot(*np.subtract(one.position, other.position)))
+        if covered.intersection(labels) and away < SAME_SPOT and shared > 0.5 * lower:
+            return labels
+    return None
+
+
+def _joined(segments: Segments, label: int, other: int) -> Segments:
+    """The same, with what had two labels under the first one."""
+    image = np.where(segments.label_image == other, label, segments.label_image)
+    blocks = []
+    for item in segments:
+        if item.label == label:
+            mask = image == label
+            blocks.append(Segment(label, mask, mask))
+        elif item.label != other:
+            blocks.append(item)
+    return replace(segments, label_image=image, blocks=tuple(blocks))
 
 
 def poorly_seen(
