@@ -13,6 +13,7 @@ import numpy as np
 import yaml
 from results_file import Row, wilson_interval
 
+from perception.hidden_truth import is_partly_right
 from perception.scenes import Drawn
 from perception.sets import PictureSet
 from perception.views import view_of
@@ -30,13 +31,14 @@ class Answer:
     """What was made of one picture.
 
     Attributes:
-        right, confident: of the graph.
+        right, confident: of the graph; one that says what blocks hide is right if that is so.
         status: its name.
         message: why it was refused.
         iou: of its blocks.
         seconds: that it took.
         errors: for each block that was named rightly in a confident graph: of the centre [mm], of
             the size [mm], of yaw [degrees], and of the centre in stated standard deviations.
+        hides: whether it says that blocks hide others.
     """
 
     seed: int
@@ -47,6 +49,7 @@ class Answer:
     iou: tuple[float, ...]
     seconds: float
     errors: tuple[tuple[float, float, float], ...] = ()
+    hides: bool = False
 
 
 def answer_of(
@@ -72,16 +75,21 @@ def answer_of(
     start = time.perf_counter()
     seen = perception.perceive(view.observation(frame.rgb, frame.labels, frame.depth))
     seconds = time.perf_counter() - start
-    confident = seen.status is GraphStatus.CONFIDENT
+    hides = seen.status is GraphStatus.HIDDEN
+    confident = hides or seen.status is GraphStatus.CONFIDENT
+    right = seen.graph.relations == truth.relations
+    if hides:
+        right = is_partly_right(seen.graph, truth, frame, world.config.camera)
     return Answer(
         drawn.seed,
-        seen.graph.relations == truth.relations,
+        right,
         confident,
         seen.status.name,
         seen.message,
-        tuple(float(block.confidence) for block in seen.graph.objects),
+        tuple(float(block.confidence) for block in seen.graph.objects if block.label),
         seconds,
         _errors(seen.graph, truth) if confident else (),
+        hides,
     )
 
 
@@ -127,6 +135,8 @@ def rows_of(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
         Row(item.what, "picture to graph, median", float(np.median(seconds)), "ms", n,
             (float(seconds.min()), float(seconds.max()))),
     ]  # fmt: skip
+    if hiding := sum(answer.hides for answer in answers):
+        rows.append(Row(item.what, "of these with hidden places", hiding / n, "", n))
     errors = np.array([error for answer in answers for error in answer.errors])
     if not len(errors):
         return rows
