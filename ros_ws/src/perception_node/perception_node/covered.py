@@ -18,6 +18,7 @@ from .blocks import Blocks, BlockSurface, measure
 from .config import PerceptionConfig
 from .errors import BadImageError, NotUprightError, UnmeasuredError
 from .observation import Observation
+from .places.occlusion import box_region
 from .segment import Segment, Segments
 
 Mask = NDArray[np.bool_]
@@ -30,6 +31,13 @@ REACH: Final = 0.05
 MIN_HEIGHT: Final = 0.003
 #: A block and what covers it are this near to one another in the picture [px].
 RIM: Final = 3
+#: Of a block that is covered at more of its width below, the lower end is known to this only, as a
+#: standard deviation [m].
+CUT: Final = 0.25
+LOW_DOUBT: Final = 0.02
+#: A strip with fewer pixels, or with colours whose channels' shares differ by more, is no block.
+MIN_PIXELS: Final = 40
+SAME_COLOR: Final = 0.06
 #: Blocks whose middles are nearer than this, seen from above, are of one stack [m].
 APART: Final = 0.08
 #: Blocks whose axes are nearer than this, and that share heights, are one [m].
@@ -110,9 +118,57 @@ def measure_seen(
         else:
             pair = _one_in_two(segments, surfaces, covered)
             if pair is None:
+                surfaces = tuple(
+                    _without_low_end(surface)
+                    if item.label in covered and _is_cut_below(item, segments, observation)
+                    else surface
+                    for item, surface in zip(segments, surfaces)
+                )
                 return Seen(segments, surfaces, covered, tuple(glimpses))
             segments = _joined(segments, *pair)
             covered = covered | {pair[0]}
+
+
+def uncovered(
+    observation: Observation, seen: Seen, blocks: Blocks
+) -> tuple[NDArray[np.uint8], Segments]:
+    """Picture and segments as they would be without what covers blocks, as these were measured.
+
+    What the visual module makes of a part of a block says nothing of the block.
+    """
+    camera, labels = observation.camera, seen.segments.label_image
+    assert camera is not None
+    rgb, found = observation.rgb.copy(), []
+    for index, item in enumerate(seen.segments):
+        if index in seen.partly:
+            outline = box_region(camera, blocks.measured[index].pose)
+            part = item.part | (outline & (labels > 0) & (labels != item.label))
+            rgb[part & ~item.part] = np.median(observation.rgb[item.part], axis=0)
+            item = Segment(item.label, part, part)
+        found.append(item)
+    return rgb, replace(seen.segments, blocks=tuple(found))
+
+
+def _is_cut_below(item: Segment, segments: Segments, observation: Observation) -> bool:
+    """Whether something nearer covers where a block ends below, for much of its width."""
+    depth = _known_depth(observation)
+    columns = np.flatnonzero(item.part.any(axis=0))
+    lowest = item.part.shape[0] - 1 - np.argmax(item.part[::-1, columns], axis=0)
+    cut = np.zeros(len(columns), bool)
+    for down in range(1, RIM + 1):
+        rows = np.minimum(lowest + down, item.part.shape[0] - 1)
+        other = segments.label_image[rows, columns]
+        nearer = depth[rows, columns] < depth[lowest, columns] - NEARER
+        cut |= nearer & (other > 0) & (other != item.label)
+    return np.count_nonzero(cut) > CUT * len(columns)
+
+
+def _without_low_end(surface: BlockSurface) -> BlockSurface:
+    """The same, of which it is not known how far down it reaches."""
+    covariance = surface.covariance.copy()
+    covariance[5, :] = covariance[:, 5] = 0.0
+    covariance[5, 5] = LOW_DOUBT**2
+    return replace(surface, covariance=covariance)
 
 
 def _one_in_two(
@@ -211,7 +267,7 @@ def _points(part: Mask, observation: Observation) -> NDArray[np.float64]:
 def _with_slivers(
     observation: Observation, segments: Segments, places: tuple[Place, ...]
 ) -> tuple[Segments, list[Glimpse]]:
-    """Strips of blocks too thin to be found, which get labels of their own, and are glimpsed."""
+    """The segments with the strips of blocks that are too thin to be found; some are glimpsed."""
     depth, camera = _known_depth(observation), observation.camera
     assert camera is not None
     labelled = segments.label_image > 0
@@ -229,14 +285,24 @@ def _with_slivers(
     if count == 1:
         return segments, []
     covered = strips.astype(bool) & (nearest < depth - NEARER)
-    labels, glimpses = segments.label_image.astype(np.int32), []
-    free = int(labels.max()) + 1
-    for number in np.unique(numbers[covered]):
+    labels, glimpses, blocks = segments.label_image.astype(np.int32), [], list(segments)
+    for free, number in enumerate(np.unique(numbers[covered]), start=int(labels.max()) + 1):
         part = numbers == number
-        glimpses.append(_glimpse(part, observation, places))
         labels[part] = free
-        free += 1
-    return replace(segments, label_image=labels), glimpses
+        if _looks_like_one(part, observation):
+            blocks.append(Segment(free, part, part))
+        else:
+            glimpses.append(_glimpse(part, observation, places))
+    return replace(segments, label_image=labels, blocks=tuple(blocks)), glimpses
+
+
+def _looks_like_one(part: Mask, observation: Observation) -> bool:
+    """Whether a strip is large enough to be measured, and of one colour."""
+    pixels = observation.rgb[part].astype(np.float64) + 1.0
+    if len(pixels) < MIN_PIXELS:
+        return False
+    shares = np.percentile(pixels / pixels.sum(axis=1, keepdims=True), [10.0, 90.0], axis=0)
+    return float((shares[1] - shares[0]).max()) < SAME_COLOR
 
 
 def _glimpse(part: Mask, observation: Observation, places: tuple[Place, ...]) -> Glimpse:

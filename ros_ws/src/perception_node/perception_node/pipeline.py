@@ -13,7 +13,7 @@ from scene_graph import GraphStatus, SceneGraph
 from .alignment import aligned
 from .blocks import centres, find_blocks, measure
 from .config import PerceptionConfig
-from .covered import Seen, measure_seen, poorly_seen
+from .covered import Seen, measure_seen, poorly_seen, uncovered
 from .errors import BadImageError, NotUprightError, PerceptionError
 from .graph import build_graph
 from .hiding import Hidden, find_hidden
@@ -125,6 +125,9 @@ class Perception:
                 *(observation, segments, standing, seen.surfaces),
                 *(seen.partly, config.smallest_block),
             )
+            if seen.covered:
+                whole = uncovered(observation, seen, blocks)
+                coordinates = self.locator.locate(self.locator.images(*whole))
             if not (poor := poorly_seen(seen, blocks, coordinates.iou, config)):
                 break
             seen = seen.without(poor, observation, places.places)
