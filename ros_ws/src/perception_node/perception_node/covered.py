@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import Final
 
 import cv2
@@ -40,8 +40,10 @@ MIN_PIXELS: Final = 40
 SAME_COLOR: Final = 0.06
 #: Blocks whose middles are nearer than this, seen from above, are of one stack [m].
 APART: Final = 0.08
-#: Blocks whose axes are nearer than this, and that share heights, are one [m].
-SAME_SPOT: Final = 0.03
+#: What is on one place and shares this part of the heights at which it is seen is one block.
+SHARED: Final = 0.3
+#: Two blocks on one place cannot have upper ends nearer to one another than this [m].
+SAME_HEIGHT: Final = 0.005
 #: A block is covered that has so many pixels beside something nearer.
 MIN_EDGE: Final = 3
 
@@ -116,7 +118,7 @@ def measure_seen(
             glimpses.append(_glimpse(poor.part, observation, places))
             segments = _only(segments, [item is not poor for item in segments])
         else:
-            pair = _one_in_two(segments, surfaces, covered)
+            pair = _one_in_two(segments, surfaces, covered, places)
             if pair is None:
                 surfaces = tuple(
                     _without_low_end(surface)
@@ -172,16 +174,23 @@ def _without_low_end(surface: BlockSurface) -> BlockSurface:
 
 
 def _one_in_two(
-    segments: Segments, surfaces: Sequence[BlockSurface], covered: frozenset[int]
+    segments: Segments,
+    surfaces: Sequence[BlockSurface],
+    covered: frozenset[int],
+    places: tuple[Place, ...],
 ) -> tuple[int, int] | None:
-    """The labels of two that can only be faces of one block, as both are at the same spot."""
+    """The labels of two that can only be of one block: on one place, and equally high."""
+    feet = np.array([place.position_world[:2] for place in places])
+    on = [
+        int(np.linalg.norm(feet - surface.position, axis=1).argmin()) for surface in surfaces
+    ]
     for i, j in combinations(range(len(surfaces)), 2):
         one, other = surfaces[i], surfaces[j]
         labels = segments.blocks[i].label, segments.blocks[j].label
-        shared = min(one.high, other.high) - max(one.low, other.low)
-        lower = min(one.high - one.low, other.high - other.low)
-        away = float(np.hypot(*np.subtract(one.position, other.position)))
-        if covered.intersection(labels) and away < SAME_SPOT and shared > 0.5 * lower:
+        shared = min(one.high, other.high) - max(one.seen_low, other.seen_low)
+        lower = min(one.high - one.seen_low, other.high - other.seen_low)
+        alike = shared > SHARED * lower or abs(one.high - other.high) < SAME_HEIGHT
+        if alike and on[i] == on[j] and covered.intersection(labels):
             return labels
     return None
 
@@ -200,23 +209,31 @@ def _joined(segments: Segments, label: int, other: int) -> Segments:
 
 
 def poorly_seen(
-    seen: Seen, blocks: Blocks, iou: NDArray[np.float64], config: PerceptionConfig
+    seen: Seen,
+    blocks: Blocks,
+    stacks: Sequence[Sequence[int]],
+    iou: NDArray[np.float64],
+    config: PerceptionConfig,
 ) -> tuple[int, ...]:
     """Labels of the blocks that others cover and of which too little is seen to tell of them.
 
     Args:
+        stacks: indices of the blocks of each, from the bottom.
         iou: how well the visual module reproduces each (A.2.5), shape (N,).
     """
-    return tuple(
-        segment.label
-        for segment, block, share in zip(seen.segments, blocks.measured, iou)
-        if segment.label in seen.covered
-        and (
-            block.rival
-            or max(block.deviation[:3]) > config.limits.doubt
-            or share < config.min_confidence
-        )
-    )
+    poor = [
+        bool(block.rival)
+        or max(block.deviation[:3]) > config.limits.doubt
+        or share < config.min_confidence
+        for block, share in zip(blocks.measured, iou)
+    ]
+    # Two that would have to be in one another are not what they look like.
+    for stack in stacks:
+        for lower, upper in pairwise(stack):
+            gap = blocks.measured[upper].pose.bottom - blocks.measured[lower].pose.top
+            if gap < -config.limits.gap:
+                poor[lower] = poor[upper] = True
+    return tuple(seen.segments.blocks[index].label for index in seen.partly if poor[index])
 
 
 def _only(segments: Segments, kept: list[bool]) -> Segments:

@@ -128,7 +128,7 @@ class Perception:
             if seen.covered:
                 whole = uncovered(observation, seen, blocks)
                 coordinates = self.locator.locate(self.locator.images(*whole))
-            if not (poor := poorly_seen(seen, blocks, coordinates.iou, config)):
+            if not (poor := poorly_seen(seen, blocks, standing.stacks, coordinates.iou, config)):
                 break
             seen = seen.without(poor, observation, places.places)
         occlusion = find_occlusion(observation, segments, places, config, blocks.poses)

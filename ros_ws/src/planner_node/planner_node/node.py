@@ -190,9 +190,11 @@ class PlannerNode(Node):
             return
         response.status = int(Status.SUCCESS)
         told = f"{len(plan.moves)} moves to '{goal}'"
-        if scene.hidden:
-            told = f"{len(plan.moves)} moves to look: '{request.goal}' is planned for afterwards"
         response.message = "; ".join(filter(None, (told, found.note)))
+        if scene.hidden:
+            wanted = f"'{request.goal}'" if request.goal else "the goal image"
+            moves = "1 move" if len(plan.moves) == 1 else f"{len(plan.moves)} moves"
+            response.message = f"{moves} to look, then {wanted} is planned for: {found.note}"
         if request.execute:
             self._check_conflict()
             claim = _Claim("a plan of plan_to_goal", self._is_shut_down)

@@ -172,7 +172,8 @@ class ClosedLoop:
                 found = self._possible.uncover(scene, goal)
             self._tell(Stage.PLANNING, found.note)
             if not attempts:
-                self._remarks.append(found.note)
+                moves = "1 move was" if len(found.moves) == 1 else f"{len(found.moves)} moves were"
+                self._remarks.append(f"{moves} made to see what stands behind others")
                 self._note(moves_planned=self.outcome.moves_planned + len(found.moves))
             attempts += 1
             plan = plan_for(scene, goal or Goal(()), found, self._scenes.now())
