@@ -32,8 +32,8 @@ class TwoRows:
 
     count: int = 3
     gap: Range = (0.14, 0.16)
-    apart: Range = (0.15, 0.17)
-    front: Range = (0.56, 0.60)
+    apart: Range = (0.16, 0.18)
+    front: Range = (0.57, 0.60)
     camera: Range = (0.60, 0.85)
     covered: float = 0.5
 

@@ -186,7 +186,12 @@ class MotionPlanner:
 
         try:
             if not self.obstacles:
-                return solve(phases_for(scene, moves, ()), scene, False)
+                try:
+                    return solve(phases_for(scene, moves, ()), scene, False)
+                except InfeasibleError:
+                    # Across a row there may be room for the hand where along it there is none.
+                    if not any(place.row for place in scene.places):
+                        raise
             return solve_choosing(
                 *(scene, moves, phases_for, solve),
                 lambda move: only_for(scene, moves, move, gripper, settings.phases),
