@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plans among two rows of places beside brute force: four objects on six places (5.4.3).
 
-In half of the tasks a tower hides what stands behind it, and the planner is told only what is seen.
-What it does first, and after that with all that is seen then, is compared with the fewest moves that
-there are, which are found by trying all of them. What hides what, and what a goal says, is written
-down here once more.
+In half of the tasks a tower hides what stands behind it, and the planner is told only what is
+seen. What it does first, and after that with all that is seen then, is compared with the fewest
+moves that there are, which are found by trying all of them. What hides what, and what a goal says,
+is written down here once more.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import random
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Final
 
 from results_file import Row
@@ -107,7 +108,7 @@ def _state(rng: random.Random) -> Stacks:
 def _stands(one: str, below: str) -> Callable[[Stacks], bool]:
     def holds(state: Stacks) -> bool:
         columns = [(f"stack{index}", *stack) for index, stack in enumerate(state)]
-        return any((below, one) in zip(column, column[1:]) for column in columns)
+        return any((below, one) in pairwise(column) for column in columns)
 
     return holds
 
@@ -133,9 +134,7 @@ def fewest(initial: Stacks, holds: Callable[[Stacks], bool], fixed: list[int]) -
     """By brute force; ``fixed``: the places that nothing is taken from or put on."""
     layer, seen, depth = [initial], {initial}, 0
     while not any(map(holds, layer)):
-        following = [
-            new for state in layer for new in _neighbours(state, fixed) if new not in seen
-        ]
+        following = [new for state in layer for new in _neighbours(state, fixed) if new not in seen]
         layer = list(dict.fromkeys(following))
         seen.update(layer)
         depth += 1

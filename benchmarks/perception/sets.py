@@ -116,7 +116,7 @@ SETS: Final = (
         solids(shapes=("box", "cylinder"), edges=(0.03, 0.07)), 1000, _REAL, sizes=(4.0, 4.0),
     ),
     PictureSet(
-        "two_rows", "two rows, 4 objects on 6 places, camera 0.6-0.85 m high", two_rows(4), 2309,
+        "two_rows", "two rows, 4 objects on 6 places, camera 0.5-0.75 m high", two_rows(4), 2309,
         graph=0.985, thesis=(0.8667, None),
     ),
     PictureSet(

@@ -81,8 +81,10 @@ def _task_of_its_own(family: Family, seed: int) -> Task:
     colors = [str(color) for color in rng.permutation(list(family.colors))[:blocks]]
     names = [object_name(color, str(rng.choice(list(family.shapes)))) for color in colors]
     sizes = {name: _uniform(family.sizes or (0.045, 0.045), rng) for name in names}
-    layout = family.rows.layout(names, rng) if family.rows else random_arrangement(
-        names, rng, len(places)
+    layout = (
+        family.rows.layout(names, rng)
+        if family.rows
+        else random_arrangement(names, rng, len(places))
     )
     goal = _other_goal(layout, rng)
     told = goal_text(goal)

@@ -7,9 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
-from tasks.two_rows import TwoRows
-
 from scene_graph import BOX
+from tasks.two_rows import TwoRows
 
 #: Low and high end of what is drawn uniformly; of whole numbers both ends included.
 Range = tuple[float, float]

@@ -27,19 +27,21 @@ class TwoRows:
         apart: between the rows [m].
         front: distance of the front row from the arm's axis [m].
         camera: height of the camera over the table [m].
-        covered: share of the tasks that begin with a block behind a tower in the front row.
+        covered: share of the tasks that begin with blocks behind a tower that is higher by two.
     """
 
     count: int = 3
     gap: Range = (0.14, 0.16)
     apart: Range = (0.16, 0.18)
     front: Range = (0.57, 0.60)
-    camera: Range = (0.60, 0.85)
+    camera: Range = (0.50, 0.75)
     covered: float = 0.5
 
     def places(self, rng: np.random.Generator) -> tuple[Point, ...]:
         """From the left of the image, the front row first, (x, y) on the table [m]."""
-        gap, apart, front = (float(rng.uniform(*item)) for item in (self.gap, self.apart, self.front))
+        gap, apart, front = (
+            float(rng.uniform(*item)) for item in (self.gap, self.apart, self.front)
+        )
         across = [(index - 0.5 * (self.count - 1)) * gap for index in range(self.count)]
         return tuple(
             (round(x, _DIGITS), round(y, _DIGITS)) for x in (front, front - apart) for y in across
@@ -56,7 +58,7 @@ class TwoRows:
         while True:
             state = random_arrangement(names, rng, 2 * self.count)
             towers = zip(state[: self.count], state[self.count :])
-            if not covered or any(len(near) >= 2 and far for near, far in towers):
+            if not covered or any(far and len(near) >= len(far) + 2 for near, far in towers):
                 return state
 
 
@@ -67,7 +69,9 @@ def row_goal(wanted: Stacks, count: int, rng: np.random.Generator) -> str:
         count: places of each row.
     """
     spots = {
-        name: (index, level) for index, stack in enumerate(wanted) for level, name in enumerate(stack)
+        name: (index, level)
+        for index, stack in enumerate(wanted)
+        for level, name in enumerate(stack)
     }
     true: list[tuple[str, str, str]] = []
     for one, (stack, level) in sorted(spots.items()):

@@ -86,9 +86,7 @@ def test_what_is_seen_over_hidden_blocks_stands_on_what_stands_for_them(
     assert stack[0] == "hidden_stack4" and stack[-1] == "cyan_box"
     bottom = seen.graph.object("hidden_stack4")
     above = seen.graph.object(stack[1])
-    assert bottom.size[2] == pytest.approx(
-        above.position_world[2] - 0.5 * above.size[2], abs=0.004
-    )
+    assert bottom.size[2] == pytest.approx(above.position_world[2] - 0.5 * above.size[2], abs=0.004)
 
 
 def test_a_block_of_which_half_is_seen_is_measured(world: World, perception: Perception) -> None:

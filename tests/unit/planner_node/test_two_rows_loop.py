@@ -64,9 +64,7 @@ class RowsBench(LoopBench):
             up_relations(shown) | front_relations(shown, rows_of(PLACES)),
             PLACES,
         )
-        self.scenes.receive(
-            Sighting(graph, status, "hidden", self.clock.ros_now(), "world")
-        )
+        self.scenes.receive(Sighting(graph, status, "hidden", self.clock.ros_now(), "world"))
 
 
 def bench_of(stacks: Stacks, *behaviours: object, **settings: object) -> RowsBench:
@@ -130,3 +128,17 @@ def test_each_move_is_looked_at_where_that_is_wanted() -> None:
     bench = bench_of(START, verify="each_move")
     outcome = bench.achieve("yellow in front of red, green on yellow")
     assert outcome.status == Status.SUCCESS, outcome.message
+
+
+def test_a_goal_that_makes_no_sense_is_refused_before_anything_moves() -> None:
+    for text, status in (
+        (
+            "red in front of blue, blue in front of green, green in front of red",
+            Status.CONTRADICTORY_GOAL,
+        ),
+        ("red on the left stack", Status.INVALID_GOAL),
+    ):
+        bench = bench_of(START)
+        outcome = bench.achieve(text)
+        assert outcome.status == status, outcome.message
+        assert not bench.plans

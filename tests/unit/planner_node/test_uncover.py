@@ -188,7 +188,9 @@ def scene_of(stacks: Stacks, heights: dict[str, float] | None = None) -> Scene:
             height = (heights or {}).get(name, EDGE)
             color = HIDDEN if is_hidden(name) else name.split("_")[0]
             objects.append(
-                SceneObject(name, color, "box", (x, y, top + 0.5 * height), size=(EDGE, EDGE, height))
+                SceneObject(
+                    name, color, "box", (x, y, top + 0.5 * height), size=(EDGE, EDGE, height)
+                )
             )
             top += height
     relations = up_relations(stacks) | front_relations(stacks, ROWS)

@@ -115,7 +115,9 @@ def test_front_relations_are_those_that_hold_of_the_lowest_blocks(stacks: Stacks
 
 
 @given(states(), st.data())
-def test_a_front_relation_that_is_turned_round_is_noticed(stacks: Stacks, data: st.DataObject) -> None:
+def test_a_front_relation_that_is_turned_round_is_noticed(
+    stacks: Stacks, data: st.DataObject
+) -> None:
     fronts = front_relations(stacks, rows_of(PLACES))
     if not fronts:
         return

@@ -23,7 +23,7 @@ from .segment import Segment, Segments
 
 Mask = NDArray[np.bool_]
 
-#: What is nearer to the camera than a neighbouring pixel by more than this covers what is there [m].
+#: What is nearer to the camera than a neighbouring pixel by more covers what is there [m].
 NEARER: Final = 0.02
 #: So far beside the middle of a place a block on it is seen [m].
 REACH: Final = 0.05
@@ -98,9 +98,7 @@ class Seen:
         )
 
 
-def measure_seen(
-    observation: Observation, segments: Segments, places: tuple[Place, ...]
-) -> Seen:
+def measure_seen(observation: Observation, segments: Segments, places: tuple[Place, ...]) -> Seen:
     """Measures the blocks; those that are covered and cannot be measured are only glimpsed.
 
     Raises:
@@ -162,7 +160,7 @@ def _is_cut_below(item: Segment, segments: Segments, observation: Observation) -
         other = segments.label_image[rows, columns]
         nearer = depth[rows, columns] < depth[lowest, columns] - NEARER
         cut |= nearer & (other > 0) & (other != item.label)
-    return np.count_nonzero(cut) > CUT * len(columns)
+    return bool(np.count_nonzero(cut) > CUT * len(columns))
 
 
 def _without_low_end(surface: BlockSurface) -> BlockSurface:
@@ -181,9 +179,7 @@ def _one_in_two(
 ) -> tuple[int, int] | None:
     """The labels of two that can only be of one block: on one place, and equally high."""
     feet = np.array([place.position_world[:2] for place in places])
-    on = [
-        int(np.linalg.norm(feet - surface.position, axis=1).argmin()) for surface in surfaces
-    ]
+    on = [int(np.linalg.norm(feet - surface.position, axis=1).argmin()) for surface in surfaces]
     for i, j in combinations(range(len(surfaces)), 2):
         one, other = surfaces[i], surfaces[j]
         labels = segments.blocks[i].label, segments.blocks[j].label
@@ -248,9 +244,7 @@ def _covered(observation: Observation, segments: Segments) -> frozenset[int]:
     middles = {item.label: _middle(item.part, observation) for item in segments}
     for item in segments:
         left, top, width, height = cv2.boundingRect(item.part.astype(np.uint8))
-        box = np.s_[
-            max(0, top - RIM) : top + height + RIM, max(0, left - RIM) : left + width + RIM
-        ]
+        box = np.s_[max(0, top - RIM) : top + height + RIM, max(0, left - RIM) : left + width + RIM]
         part = item.part[box]
         here = np.where(part, depth[box], 0.0).astype(np.float32)
         around = cv2.dilate(here, np.ones((2 * RIM + 1,) * 2, np.uint8))

@@ -104,8 +104,8 @@ PARAMETERS: Final = (
     ParameterSpec(
         "stack_positions",
         [value for position in _DEFAULT.stack_positions for value in position],
-        "x, y, z of each place on the table, from the left of the image, one after the other; of two "
-        "rows those of the one that is nearer to the camera first [m]",
+        "x, y, z of each place on the table, from the left of the image, one after the other; of "
+        "two rows those of the one that is nearer to the camera first [m]",
         minimum=-10.0,
         maximum=10.0,
         check=_positions_problem,

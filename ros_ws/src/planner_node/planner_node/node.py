@@ -24,7 +24,7 @@ from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.presence import Presence
 from tamp_runtime.qos import NEWEST, STATUS
 
-from scene_graph import Stacks
+from scene_graph import ONE_ROW
 
 from .conversions import (
     FeedbackWriter,
@@ -35,7 +35,7 @@ from .conversions import (
     sighting_from_message,
 )
 from .errors import BusyError, ConflictError, NotConfidentError, PlannerError, SearchError
-from .goals import Goal
+from .goals import Goal, ResolveGoal
 from .image_client import ImageClient
 from .loop import (
     ClosedLoop,
@@ -202,18 +202,16 @@ class PlannerNode(Node):
                 self._motion.start(plan)
             response.message += f"; published as plan {plan.plan_id}"
 
-    def _plan_in(
-        self, scene: Scene, resolve: Callable[[Stacks], Goal]
-    ) -> tuple[Goal, SearchResult]:
+    def _plan_in(self, scene: Scene, resolve: ResolveGoal) -> tuple[Goal, SearchResult]:
         """A plan to the goal, or where blocks hide others one that uncovers them."""
         if not scene.hidden:
-            goal = resolve(scene.stacks).on(scene.rows)
+            goal = resolve(scene.stacks, scene.rows)
             return goal, plan_in(scene, goal, self._settings, self._is_shut_down)
-        goal = meaning(resolve, scene)
-        if goal is not None and decided(goal, scene) and goal.holds(scene.stacks):
-            return goal, plan_in(scene, goal, self._settings, self._is_shut_down)
-        found = uncover_in(scene, goal, self._settings, self._is_shut_down)
-        return goal or Goal(()), found
+        meant = meaning(resolve, scene)
+        if meant is not None and decided(meant, scene) and meant.holds(scene.stacks):
+            return meant, plan_in(scene, meant, self._settings, self._is_shut_down)
+        found = uncover_in(scene, meant, self._settings, self._is_shut_down)
+        return meant or Goal(()), found
 
     def _on_achieve_goal(self, handle: ServerGoalHandle) -> AchieveGoal.Result:
         request, feedback = handle.request, FeedbackWriter()
@@ -224,7 +222,7 @@ class PlannerNode(Node):
         def report(progress: Progress) -> None:
             handle.publish_feedback(feedback.message(progress))
 
-        def read() -> Callable[[Stacks], Goal]:
+        def read() -> ResolveGoal:
             return self._read_goal(request, cancelled)
 
         motion, conflict = self._motion, self._presence.conflict
@@ -245,11 +243,11 @@ class PlannerNode(Node):
         self._finish(handle, outcome)
         return outcome_to_message(outcome)
 
-    def _read_goal(self, request: Any, cancelled: Callable[[], bool]) -> Callable[[Stacks], Goal]:
+    def _read_goal(self, request: Any, cancelled: Callable[[], bool]) -> ResolveGoal:
         """Of pictures as codes the goal is the state that their plan leads to."""
         latent = self._latent
         if latent is not None:
-            return lambda seen: latent.plan(request, seen)[0]
+            return lambda seen, _rows=ONE_ROW: latent.plan(request, seen)[0]
         return read_goal(request, functools.partial(self._images.interpret, cancelled=cancelled))
 
     def _latent_view(self) -> LatentView | None:

@@ -55,9 +55,7 @@ def rows_of(places: Sequence[Place]) -> Rows:
     """How places lie, as their graph tells."""
     if all(place.row == 0 for place in places):
         return ONE_ROW
-    return Rows(
-        tuple(place.row for place in places), tuple(place.column or 0 for place in places)
-    )
+    return Rows(tuple(place.row for place in places), tuple(place.column or 0 for place in places))
 
 
 def in_rows(positions: Sequence[Point], camera: Point) -> tuple[Place, ...]:

@@ -16,9 +16,7 @@ from .relations import Relation
 Stacks = tuple[tuple[str, ...], ...]
 
 
-def spots_of(
-    stacks: Stacks, spot: Callable[[int, int], Spot] = Spot
-) -> dict[str, Spot]:
+def spots_of(stacks: Stacks, spot: Callable[[int, int], Spot] = Spot) -> dict[str, Spot]:
     """Where every block and every base is; see :class:`Spot`.
 
     Args:

@@ -78,7 +78,5 @@ def find_blocks(
     if not surfaces:
         shapes = tuple(shape_from_outline(observation.rgb, segment.part) for segment in segments)
         return Blocks(shapes)
-    measured = pose_blocks(
-        surfaces, standing.stacks, standing.table_heights, covered, smallest
-    )
+    measured = pose_blocks(surfaces, standing.stacks, standing.table_heights, covered, smallest)
     return Blocks(tuple(block.shape for block in measured), measured)

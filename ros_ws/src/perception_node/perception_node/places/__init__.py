@@ -2,8 +2,8 @@
 """Places: which stack stands where, and what hides them.
 
 :mod:`.row` holds everything that is assumed of places in a row, :mod:`.two_rows` what is different
-where one row is behind another; another arrangement is another :class:`Places`, given to a perception
-by ``Perception(locator, places=…)``.
+where one row is behind another; another arrangement is another :class:`Places`, given to a
+perception by ``Perception(locator, places=…)``.
 """
 
 from .row import RowOfPlaces

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where blocks can be that other blocks hide: of two rows, the one behind the other (5.4.3).
 
-The column over a place is divided into small cells. A cell is free if the camera sees through it. A
-block can only be where no cell that it fills is free, so where the smallest block fits nowhere, there
-is none.
+The column over a place is divided into small cells. A cell is free if the camera sees through it.
+A block can only be where no cell that it fills is free, so where the smallest block fits nowhere,
+there is none.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Cells:
         layers = max(1, round(edge / CELL))
         first = max(0, round((low - self.floor) / CELL))
         slab = self.free[first : first + layers]
-        return len(slab) == layers and bool(_windows(slab.any(axis=0), layers).any())
+        return len(slab) == layers and bool(_windows(np.asarray(slab.any(axis=0)), layers).any())
 
     def hidden_above(self, low: float, edge: float) -> float:
         """How far up from a height hidden cells go on in which something of that width fits [m]."""
@@ -105,7 +105,10 @@ def cells_over(
 
 
 def _is_free(points: Array, seen: Array, camera: PinholeCamera) -> Mask:
-    """Whether what is seen at points is behind them, shape (..., 3) -> (...); outside: it is not."""
+    """Whether what is seen at points is behind them, shape (..., 3) [m] -> (...).
+
+    Outside of the picture it is not.
+    """
     height, width = seen.shape
     pixels = np.nan_to_num(camera.project(points), nan=-1.0)
     columns, rows = np.rint(pixels).astype(int).transpose(-1, *range(pixels.ndim - 1))

@@ -3,8 +3,8 @@
 
 The rules are sound: what they refuse, no arrangement of blocks fulfils, whatever the scene. They
 are not complete; what they let pass and is impossible all the same, the search proves unreachable.
-They know ``up``, ``above``, ``left``, ``front``, ``beside`` and their negations; of other predicates
-they say nothing.
+They know ``up``, ``above``, ``left``, ``front``, ``beside`` and their negations; of other
+predicates they say nothing.
 """
 
 from __future__ import annotations
@@ -44,9 +44,7 @@ def check_contradictions(goal: Goal, stack_count: int) -> None:
         raise ContradictoryGoalError([item.words for item in relations], problem)
     for count in goal.counts:
         if _uncountable(count, relations, stack_count, goal.rows):
-            problem_of = partial(
-                _uncountable, count, stack_count=stack_count, rows=goal.rows
-            )
+            problem_of = partial(_uncountable, count, stack_count=stack_count, rows=goal.rows)
             relations = _fewest(relations, problem_of)
             problem = problem_of(relations)
             assert problem is not None
@@ -204,9 +202,9 @@ def _impossible_columns(
                 return f"{item.subject} and {item.object} would have to be in one stack and apart"
     columns = rows.columns or tuple(range(stack_count))
     among = "stacks" if rows.count == 1 else "columns of stacks"
-    return _impossible_axis(
-        LEFT, among, relations, stack_of, base_of, columns
-    ) or _impossible_axis(FRONT, "rows", relations, stack_of, base_of, rows.rows)
+    return _impossible_axis(LEFT, among, relations, stack_of, base_of, columns) or _impossible_axis(
+        FRONT, "rows", relations, stack_of, base_of, rows.rows
+    )
 
 
 def _impossible_axis(

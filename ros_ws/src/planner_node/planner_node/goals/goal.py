@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 from scene_graph import (
     ONE_ROW,
@@ -105,6 +106,14 @@ class Goal:
         if placed != sorted(names) or not self.holds(tuple(stacks)):
             return None
         return tuple(stacks)
+
+
+class ResolveGoal(Protocol):
+    """Finds the objects of a goal, in whatever form it was asked for, in a scene."""
+
+    def __call__(self, seen: Stacks, rows: Rows = ONE_ROW, /) -> Goal:
+        """The goal for these blocks, on places that lie so; raises PlannerError."""
+        ...
 
 
 def complete_goal(stacks: Stacks) -> Goal:

@@ -10,7 +10,7 @@ from typing import Any
 
 from tamp_runtime.motion_report import MotionReport
 
-from scene_graph import Stacks, format_stacks
+from scene_graph import format_stacks
 
 from ..errors import (
     CancelledError,
@@ -23,7 +23,7 @@ from ..errors import (
     PlannerError,
     TooManyReplansError,
 )
-from ..goals.goal import Goal
+from ..goals.goal import Goal, ResolveGoal
 from ..search import SearchResult
 from ..settings import EACH_MOVE, WATCH, Settings
 from .account import account_for, describe_difference, in_the_view
@@ -90,7 +90,7 @@ class ClosedLoop:
         self._requested = scenes.now()
         self.outcome = Outcome()
 
-    def run(self, read: Callable[[], Callable[[Stacks], Goal]]) -> Outcome:
+    def run(self, read: Callable[[], ResolveGoal]) -> Outcome:
         """Works until the goal is confirmed or cannot be reached; every end is an outcome.
 
         Args:
@@ -121,7 +121,7 @@ class ClosedLoop:
         self._note(status=status, message=message, module=module)
         return self.outcome
 
-    def _achieve(self, read: Callable[[], Callable[[Stacks], Goal]]) -> tuple[Status, str]:
+    def _achieve(self, read: Callable[[], ResolveGoal]) -> tuple[Status, str]:
         self._tell(Stage.PERCEIVING, "reading the goal")
         with self._timed("perceive_seconds"):
             resolve = read()
@@ -153,9 +153,7 @@ class ClosedLoop:
         told = "".join(f"; {sentence}" for sentence in dict.fromkeys(self._remarks))
         return Status.SUCCESS, f"the camera confirms '{goal}': {seen}{told}"
 
-    def _uncovered(
-        self, scene: Scene, resolve: Callable[[Stacks], Goal]
-    ) -> tuple[Scene, Goal]:
+    def _uncovered(self, scene: Scene, resolve: ResolveGoal) -> tuple[Scene, Goal]:
         """The scene once all that matters to the goal is seen, and the goal in it (5.4.3).
 
         Blocks that hide others are moved aside first.
@@ -167,7 +165,9 @@ class ClosedLoop:
                 return scene, goal
             if attempts and not self._possible.just_refused:
                 self._count_replan(scene)
-            self._tell(Stage.PLANNING, f"searching what to move aside in {format_stacks(scene.stacks)}")
+            self._tell(
+                Stage.PLANNING, f"searching what to move aside in {format_stacks(scene.stacks)}"
+            )
             with self._timed("plan_seconds"):
                 found = self._possible.uncover(scene, goal)
             self._tell(Stage.PLANNING, found.note)
@@ -178,7 +178,7 @@ class ClosedLoop:
             attempts += 1
             plan = plan_for(scene, goal or Goal(()), found, self._scenes.now())
             scene = self._carry_out(plan, plan.goal)
-        return scene, resolve(scene.stacks).on(scene.rows)
+        return scene, resolve(scene.stacks, scene.rows)
 
     def _work_off(self, scene: Scene, goal: Goal, found: SearchResult) -> Scene:
         """Has what was found carried out, all at once or with a look after each move."""

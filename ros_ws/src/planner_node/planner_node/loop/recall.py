@@ -42,9 +42,7 @@ def recall(scene: Scene, plan: Plan, report: MotionReport) -> Scene:
     return scene
 
 
-def recalled(
-    scene: Scene, expected: Stacks, objects: Sequence[SceneObject]
-) -> Stacks | None:
+def recalled(scene: Scene, expected: Stacks, objects: Sequence[SceneObject]) -> Stacks | None:
     """The state that fits what is seen and what is expected; None where they contradict."""
     heights = {item.name: item.size[2] for item in (*objects, *scene.graph.objects)}
     seen = {name for stack in scene.stacks for name in stack}

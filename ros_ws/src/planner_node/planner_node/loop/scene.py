@@ -73,14 +73,10 @@ class Scene:
     @property
     def seen_stacks(self) -> Stacks:
         """The blocks that are seen."""
-        return tuple(
-            tuple(name for name in stack if not is_hidden(name)) for stack in self.stacks
-        )
+        return tuple(tuple(name for name in stack if not is_hidden(name)) for stack in self.stacks)
 
 
-def scene_in(
-    sighting: Sighting, min_confidence: float = 0.0, may_hide: bool = False
-) -> Scene:
+def scene_in(sighting: Sighting, min_confidence: float = 0.0, may_hide: bool = False) -> Scene:
     """Raises NotConfidentError if the graph cannot be planned on; the sentence says why.
 
     Args:

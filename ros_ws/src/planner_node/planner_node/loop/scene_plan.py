@@ -8,7 +8,8 @@ from collections.abc import Callable, Sequence
 from scene_graph import NOT, Stacks
 
 from ..errors import AmbiguousObjectError, GoalImageError, UnknownObjectError
-from ..goals.goal import Goal
+from ..goals.contradictions import check_contradictions
+from ..goals.goal import Goal, ResolveGoal
 from ..search import SearchResult
 from ..search.limits import Limits
 from ..search.possible import Exclusion
@@ -71,12 +72,18 @@ def uncover_in(
     return uncover(scene.stacks, sight, limits, exclusions, stability, rate)
 
 
-def meaning(resolve: Callable[[Stacks], Goal], scene: Scene) -> Goal | None:
-    """What a goal means where some blocks are hidden; None if it may be of these."""
+def meaning(resolve: ResolveGoal, scene: Scene) -> Goal | None:
+    """What a goal means where some blocks are hidden; None if it may be of these.
+
+    Raises:
+        PlannerError: it makes no sense, whatever is hidden.
+    """
     try:
-        return resolve(scene.seen_stacks).on(scene.rows)
+        goal = resolve(scene.seen_stacks, scene.rows)
     except (UnknownObjectError, AmbiguousObjectError, GoalImageError):
         return None
+    check_contradictions(Goal(goal.relations, rows=goal.rows), len(scene.stacks))
+    return goal
 
 
 def decided(goal: Goal, scene: Scene) -> bool:

@@ -33,9 +33,7 @@ def excluding_parts(initial: Stacks, goal: Goal, limits: Limits) -> list[Relatio
     return parts
 
 
-def _excluded(
-    initial: Stacks, parts: list[Relation | Count], rows: Rows, limits: Limits
-) -> bool:
+def _excluded(initial: Stacks, parts: list[Relation | Count], rows: Rows, limits: Limits) -> bool:
     goal = Goal(
         tuple(part for part in parts if isinstance(part, Relation)),
         tuple(part for part in parts if isinstance(part, Count)),

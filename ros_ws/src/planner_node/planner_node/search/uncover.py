@@ -137,11 +137,16 @@ def _moves(
         for target, other in enumerate(stacks):
             if target == source or (other and is_hidden(other[-1])):
                 continue
-            objection = stability.objection(stack[-1], other[-1]) if stability and other else None
-            if objection is not None and (objection.falls or strict or stability.require):
+            if stability and other and _is_shunned(stability, stack[-1], other[-1], strict):
                 continue
             move = Move(source, target)
             yield move, apply_move(stacks, move)
+
+
+def _is_shunned(stability: Stability, block: str, support: str, strict: bool) -> bool:
+    """Whether a block is not put on another: it falls, or (strict) is unstable there."""
+    objection = stability.objection(block, support)
+    return objection is not None and (objection.falls or strict or stability.require)
 
 
 def _why(stacks: Stacks, sight: Sight, hidden: Sequence[int]) -> str:
