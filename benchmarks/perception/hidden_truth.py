@@ -20,9 +20,11 @@ from sim_node.scene import CameraConfig
 
 #: A block of which more is visible has to be seen.
 MOST_MISSED: Final = 0.5
-#: The smallest block that there may be [m], and how far beside the middle of a place it may be [m].
+#: The smallest block that there may be [m], and how far beside the middle of a place, or of a block
+#: that it stands on, its own middle may be [m].
 SMALLEST: Final = 0.025
-ASIDE: Final = 0.02
+BESIDE_PLACE: Final = 0.0225
+BESIDE_BLOCK: Final = 0.45 * SMALLEST
 #: Depth of a surface that is seen differs from that of its point by less [m].
 SAME: Final = 0.004
 _CORNERS: Final = np.array(list(itertools.product((-0.5, 0.0, 0.5), repeat=3)))
@@ -85,11 +87,12 @@ def _could_hide(place: int, truth: SceneGraph, frame: Frame, camera: CameraConfi
     """Whether a small cube could be on a place's stack without any of its corners being seen."""
     stack = truth.stacks()[place]
     x, y, top = truth.places[place].position_world
+    aside = BESIDE_BLOCK if stack else BESIDE_PLACE
     if stack:
         item = truth.object(stack[-1])
-        x, y, top = item.position_world[0], item.position_world[1], top
-        top = item.position_world[2] + 0.5 * item.size[2]
-    for dx, dy in itertools.product(np.linspace(-ASIDE, ASIDE, 9), repeat=2):
+        x, y, top = item.position_world
+        top += 0.5 * item.size[2]
+    for dx, dy in itertools.product(np.linspace(-aside, aside, 9), repeat=2):
         centre = (x + dx, y + dy, top + 0.5 * SMALLEST)
         points = _project(_CORNERS * SMALLEST + centre, camera)
         columns, rows = np.round(points[:, :2]).astype(int).T

@@ -217,6 +217,8 @@ def poorly_seen(
         stacks: indices of the blocks of each, from the bottom.
         iou: how well the visual module reproduces each (A.2.5), shape (N,).
     """
+    if not seen.covered:
+        return ()
     poor = [
         bool(block.rival)
         or max(block.deviation[:3]) > config.limits.doubt

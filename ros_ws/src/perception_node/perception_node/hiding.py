@@ -9,7 +9,7 @@ from typing import Final
 
 from scene_graph import BOX, HIDDEN, Place, SceneObject, base_name, hidden_name
 
-from .blocks import Blocks
+from .blocks import Blocks, MeasuredBlock
 from .config import PerceptionConfig
 from .covered import Glimpse
 from .observation import Observation
@@ -85,12 +85,27 @@ def find_hidden(
                 found.append(Hidden(place.index, level, level_of, pose.bottom))
             level_of = pose.top
         glimpsed = max((item.high for item in here), default=-1.0)
-        if glimpsed > level_of + config.limits.gap or cells.can_hide(
-            level_of, config.smallest_block
+        if glimpsed > level_of + config.limits.gap or _hides_next(
+            cells, level_of, place, blocks.measured[stack[-1]] if stack else None, config
         ):
             up = level_of + cells.hidden_above(level_of, config.smallest_block)
             found.append(Hidden(place.index, len(stack), level_of, max(up, glimpsed)))
     return tuple(found)
+
+
+def _hides_next(
+    cells: Cells,
+    level: float,
+    place: Place,
+    top: MeasuredBlock | None,
+    config: PerceptionConfig,
+) -> bool:
+    """Whether a block can be unseen on a place, or on the highest block of it that is seen."""
+    edge = config.smallest_block
+    if top is None:
+        return cells.can_hide(level, edge)
+    x, y = (a - b for a, b in zip(top.pose.position_world[:2], place.position_world[:2]))
+    return cells.can_hide(level, edge, (x, y), config.limits.overhang * edge)
 
 
 def _hides_all(cells: Cells, low: float, high: float, edge: float) -> bool:

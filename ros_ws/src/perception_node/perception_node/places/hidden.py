@@ -46,12 +46,24 @@ class Cells:
     free: Mask
     floor: float
 
-    def can_hide(self, low: float, edge: float) -> bool:
-        """Whether a cube of some edge can stand hidden at a height [m]."""
+    def can_hide(
+        self, low: float, edge: float, middle: tuple[float, float] = (0.0, 0.0), reach: float = 1.0
+    ) -> bool:
+        """Whether a cube of some edge can stand hidden at a height [m].
+
+        Args:
+            middle: of what it stands on, from the place's centre, (x, y) [m].
+            reach: how far beside that its own middle can be, along x and y [m].
+        """
         layers = max(1, round(edge / CELL))
         first = max(0, round((low - self.floor) / CELL))
         slab = self.free[first : first + layers]
-        return len(slab) == layers and bool(_windows(np.asarray(slab.any(axis=0)), layers).any())
+        if len(slab) < layers:
+            return False
+        fits = _windows(np.asarray(slab.any(axis=0)), layers)
+        centres = CELL * (np.arange(len(fits)) - 0.5 * (len(fits) - 1))
+        x, y = (np.abs(centres - at) <= reach + 0.5 * CELL for at in middle)
+        return bool((fits & y[:, None] & x).any())
 
     def hidden_above(self, low: float, edge: float) -> float:
         """How far up from a height hidden cells go on in which something of that width fits [m]."""
