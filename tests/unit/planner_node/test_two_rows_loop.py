@@ -9,13 +9,18 @@ from dataclasses import replace
 from loop_bench import LoopBench, fail
 from tamp_runtime.motion_report import MotionReason
 
-from planner_node.loop import Sighting, Status
+from planner_node.goals import Goal
+from planner_node.loop import Sighting, Status, plan_for, scene_in
+from planner_node.loop.plan_watch import PlanWatch
+from planner_node.search import SearchResult
 from scene_graph import (
     HIDDEN,
     GraphStatus,
+    Move,
     SceneGraph,
     SceneObject,
     Stacks,
+    apply_move,
     front_relations,
     hidden_name,
     hidden_places,
@@ -142,3 +147,42 @@ def test_a_goal_that_makes_no_sense_is_refused_before_anything_moves() -> None:
         outcome = bench.achieve(text)
         assert outcome.status == status, outcome.message
         assert not bench.plans
+
+
+def shown(stacks: Stacks, stamp: int) -> Sighting:
+    bench = bench_of(stacks)
+    bench.look()
+    assert bench.scenes.newest is not None
+    return replace(bench.scenes.newest, stamp=stamp)
+
+
+def watch_of(stacks: Stacks) -> PlanWatch:
+    """Over a plan that moves the top of the first stack to the last place."""
+    move = Move(0, 5)
+    scene = scene_in(shown(stacks, 1), may_hide=True)
+    found = SearchResult((move,), (scene.stacks, apply_move(scene.stacks, move)), 0, 0.0)
+    return PlanWatch(plan_for(scene, Goal(()), found, 1))
+
+
+def test_a_block_that_comes_into_view_where_blocks_were_hidden_is_no_surprise() -> None:
+    watch = watch_of(START)
+    both: Stacks = (START[0], (), (), ("yellow_box", "orange_box"), (), ())  # of two one is seen
+    assert not any(watch.see(shown(both, stamp)) for stamp in range(2, 9))
+
+
+def test_a_block_that_comes_to_a_place_that_was_seen_to_be_empty_is_one() -> None:
+    watch = watch_of(START)
+    added: Stacks = (START[0], (), (), (), ("pink_box",), ())
+    assert any(watch.see(shown(added, stamp)) for stamp in range(2, 9))
+    assert "pink_box is seen on stack4" in watch.contradiction
+
+
+def test_a_block_that_a_tower_hides_is_not_missed() -> None:
+    seen: Stacks = (("red_box", "blue_box"), ("green_box",), (), ("yellow_box",), (), ())
+    move = Move(1, 0)
+    scene = scene_in(shown(seen, 1))
+    found = SearchResult((move,), (seen, apply_move(seen, move)), 0, 0.0)
+    watch = PlanWatch(plan_for(scene, Goal(()), found, 1))
+    for stamp in range(2, 9):
+        watch.see(shown(apply_move(seen, move), stamp))
+    assert "yellow_box" not in watch.contradiction
