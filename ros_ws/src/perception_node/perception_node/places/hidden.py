@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where blocks can be that other blocks hide: of two rows, the one behind the other (5.4.3).
 
-The column over a place is divided into small cells. A cell is free if the camera sees through it.
-A block can only be where no cell that it fills is free, so where the smallest block fits nowhere,
+The column over a place is filled with a grid of points. A point is free if the camera sees through
+it. A block can only be where none of its points is free, so where the smallest block fits nowhere,
 there is none.
 """
 
@@ -24,9 +24,9 @@ from scene_graph import Place
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-#: Edge of a cell [m].
+#: Distance of two neighbouring points [m].
 CELL: Final = 0.005
-#: A cell is free if what is seen there is further behind it than this [m].
+#: A point is free if what is seen there is further behind it than this [m].
 BEHIND: Final = 0.006
 #: Half of the width of a block that hides another one, and of the other [m].
 HALF_WIDTH: Final = 0.026
@@ -36,11 +36,11 @@ RIM: Final = 3
 
 @dataclass(frozen=True)
 class Cells:
-    """The cells over one place.
+    """The points over one place.
 
     Attributes:
         free: whether the camera sees through them, shape (z, y, x).
-        floor: height of the lowest layer's lower end [m].
+        floor: height of the lowest ones [m].
     """
 
     free: Mask
@@ -55,19 +55,19 @@ class Cells:
             middle: of what it stands on, from the place's centre, (x, y) [m].
             reach: how far beside that its own middle can be, along x and y [m].
         """
-        layers = max(1, round(edge / CELL))
+        layers = round(edge / CELL) + 1
         first = max(0, round((low - self.floor) / CELL))
         slab = self.free[first : first + layers]
         if len(slab) < layers:
             return False
         fits = _windows(np.asarray(slab.any(axis=0)), layers)
         centres = CELL * (np.arange(len(fits)) - 0.5 * (len(fits) - 1))
-        x, y = (np.abs(centres - at) <= reach + 0.5 * CELL for at in middle)
+        x, y = (np.abs(centres - at) <= reach for at in middle)
         return bool((fits & y[:, None] & x).any())
 
     def hidden_above(self, low: float, edge: float) -> float:
-        """How far up from a height hidden cells go on in which something of that width fits [m]."""
-        first, layers = max(0, round((low - self.floor) / CELL)), max(1, round(edge / CELL))
+        """How far up from a height nothing is seen of something of that width [m]."""
+        first, layers = max(0, round((low - self.floor) / CELL)), round(edge / CELL) + 1
         top = first
         while top < len(self.free) and _windows(self.free[top], layers).any():
             top += 1
@@ -75,7 +75,7 @@ class Cells:
 
 
 def _windows(free: Mask, size: int) -> Mask:
-    """Which squares of cells have no free one in them, shape (y, x) -> (y', x')."""
+    """Which squares of points have no free one in them, shape (y, x) -> (y', x')."""
     sums = np.pad(free.astype(int), ((1, 0), (1, 0))).cumsum(axis=0).cumsum(axis=1)
     inside = sums[size:, size:] - sums[:-size, size:] - sums[size:, :-size] + sums[:-size, :-size]
     return np.asarray(inside == 0)
@@ -88,13 +88,14 @@ def cells_over(
     half_width: float,
     height: float,
 ) -> tuple[Cells, ...]:
-    """The cells over each place; all are free where there is no depth or no camera.
+    """The points over each place; all are free where there is no depth or no camera.
 
     Args:
         half_width, height: of the columns [m].
     """
-    across = np.arange(-half_width + 0.5 * CELL, half_width, CELL)
-    up = np.arange(0.5 * CELL, height, CELL)
+    steps = round(half_width / CELL)
+    across = CELL * np.arange(-steps, steps + 1)
+    up = np.arange(0.0, height, CELL)
     z, y, x = np.meshgrid(up, across, across, indexing="ij")
     depth, camera = observation.depth, observation.camera
     if depth is None or camera is None:
