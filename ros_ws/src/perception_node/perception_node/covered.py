@@ -222,6 +222,7 @@ def poorly_seen(
     poor = [
         bool(block.rival)
         or max(block.deviation[:3]) > config.limits.doubt
+        or block.tilt > config.limits.tilt
         or share < config.min_confidence
         for block, share in zip(blocks.measured, iou)
     ]
