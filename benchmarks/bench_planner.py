@@ -24,6 +24,7 @@ from planner_peer import FastDownward
 from refused_goals import refused_rows
 from results_file import Row, print_rows, quick, write_result
 from tqdm import tqdm
+from two_row_plans import two_row_rows
 
 from planner_node import Goal, make_plan
 from planner_node.goals import complete_goal
@@ -175,6 +176,7 @@ def main() -> None:
         make_plan(*random_problem(blocks, places, 0, complete=True), MAX_EXPANSIONS)
     rows = [*optimal_rows(count), memory_row(count), *bounded_rows(3 if quick() else 20)]
     rows += sentence_rows(30 if quick() else 300) + refused_rows(40 if quick() else 500)
+    rows += two_row_rows(40 if quick() else 500)
     if peer is None:
         print("Fast Downward is left out; FD=FOLDER names an environment with up-fast-downward")
     else:

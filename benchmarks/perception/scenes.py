@@ -13,6 +13,7 @@ import numpy as np
 import yaml
 from tasks.draw import draw_row
 from tasks.family import Row, Viewpoint
+from tasks.two_rows import TwoRows
 from tasks.view import camera_of
 
 from scene_graph import BASIC_COLORS, BOX, COLORS, CYLINDER, ROW_OF_THREE, Stacks, object_name
@@ -204,6 +205,21 @@ def solids(
         }
         if clutter:
             scene["obstacles"] = _clutter(places, camera["position"], rng)
+        return Drawn(seed, layout, scene)
+
+    return draw
+
+
+def two_rows(blocks: int) -> Callable[[int], Drawn]:
+    """Random states on two rows of three places each, in half of them a block behind a tower."""
+
+    def draw(number: int) -> Drawn:
+        seed, rows = FIRST_SEED + number, TwoRows()
+        rng = np.random.default_rng([seed, 8])
+        places = rows.places(rng)
+        colors = [str(color) for color in rng.permutation(BASIC_COLORS)[:blocks]]
+        layout = rows.layout([object_name(color, BOX) for color in colors], rng)
+        scene = {"places": [list(place) for place in places], "cameras": [rows.view(rng)]}
         return Drawn(seed, layout, scene)
 
     return draw

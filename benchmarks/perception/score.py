@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from results_file import Row, wilson_interval
 
 from perception.damages import Shot
+from perception.hidden_truth import is_partly_right
 from perception.scenes import Drawn
 from perception.sets import PictureSet
 from perception.views import view_of
@@ -39,7 +40,7 @@ class Answer:
     """What was made of one picture.
 
     Attributes:
-        right, confident: of the graph.
+        right, confident: of the graph; one that says what blocks hide is right if that is so.
         status: its name.
         message: why it was refused.
         iou: of its blocks.
@@ -49,6 +50,7 @@ class Answer:
         named: of each block its true colour and shape, and those seen, empty where it was not.
         probability, evidence: of :class:`Perceived`.
         baselines: whether the graph is right with each of :data:`BASELINES`.
+        hides: whether it says that blocks hide others.
     """
 
     seed: int
@@ -63,6 +65,7 @@ class Answer:
     baselines: tuple[bool, ...] = ()
     probability: float = 0.0
     evidence: tuple[float, ...] = ()
+    hides: bool = False
 
 
 def answer_of(drawn: Drawn, item: PictureSet, locator: Locator, world: World) -> Answer:
@@ -86,13 +89,19 @@ def answer_of(drawn: Drawn, item: PictureSet, locator: Locator, world: World) ->
         earlier = functools.partial(_other_state, world, drawn)
         observation = item.damage(observation, Shot(exact.labels, earlier, rng))
     answer, seen = answer_to(drawn.seed, observation, truth, item, locator)
+    if answer.hides:
+        right = is_partly_right(seen.graph, truth, frame, world.config.camera)
+        answer = replace(answer, right=right)
     return replace(answer, named=_named(seen, exact.labels, true_blocks))
 
 
 def answer_to(
     seed: int, observation: Observation, truth: SceneGraph, item: PictureSet, locator: Locator
 ) -> tuple[Answer, Perceived]:
-    """What perception says of a picture, wherever it comes from; blocks by name left out."""
+    """What perception says of a picture, wherever it comes from.
+
+    Blocks by name are left out, and where blocks hide others whether that is right.
+    """
     feet = tuple(place.position_world for place in truth.places)
     perception = Perception(
         locator, PerceptionConfig(mask_source=item.mask_source, stack_positions=feet)
@@ -104,19 +113,21 @@ def answer_to(
         Perception(baseline, perception.config).perceive(observation).graph.relations
         for baseline in (BASELINES.values() if item.baselines else ())
     ]
-    confident = seen.status is GraphStatus.CONFIDENT
+    hides = seen.status is GraphStatus.HIDDEN
+    confident = hides or seen.status is GraphStatus.CONFIDENT
     answer = Answer(
         seed,
         seen.graph.relations == truth.relations,
         confident,
         seen.status.name,
         seen.message,
-        tuple(float(block.confidence) for block in seen.graph.objects),
+        tuple(float(block.confidence) for block in seen.graph.objects if block.label),
         seconds,
         _errors(seen.graph, truth) if confident and item.damage is None else (),
         baselines=tuple(other == truth.relations for other in others),
         probability=seen.probability,
         evidence=seen.evidence,
+        hides=hides,
     )
     return answer, seen
 
@@ -207,6 +218,8 @@ def rows_of(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
         Row(item.what, "picture to graph, median", float(np.median(seconds)), "ms", n,
             (float(seconds.min()), float(seconds.max()))),
     ]  # fmt: skip
+    if hiding := sum(answer.hides for answer in answers):
+        rows.append(Row(item.what, "of these with hidden places", hiding / n, "", n))
     errors = np.array([error for answer in answers for error in answer.errors])
     if not len(errors):
         return rows

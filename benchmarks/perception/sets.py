@@ -25,6 +25,7 @@ from perception.scenes import (
     solids,
     state_of_six,
     turned,
+    two_rows,
 )
 from perception_node import Observation
 from perception_node.segment import RGBD, SEGMENTATION_TOPIC
@@ -199,6 +200,14 @@ SETS: Final = (
     PictureSet(
         "solids_noisy", "cuboids and cylinders 3-7 cm, any yaw, real depth",
         solids(shapes=("box", "cylinder"), edges=(0.03, 0.07)), 1000, _REAL, sizes=(4.0, 4.0),
+    ),
+    PictureSet(
+        "two_rows", "two rows, 4 objects on 6 places, camera 0.5-0.75 m high", two_rows(4), 2309,
+        graph=0.985, thesis=(0.8667, None),
+    ),
+    PictureSet(
+        "two_rows_noisy", "two rows, 4 objects on 6 places, depth of a real camera", two_rows(4),
+        1000, _REAL, graph=0.97,
     ),
     _as_cameras_are("blurred", "blurred by 1 px", color=ColorConfig(blur=1.0)),
     _as_cameras_are("jpeg", "blurred by 0.7 px, JPEG of quality 90",

@@ -14,6 +14,7 @@ from scene_graph import Stacks, object_name
 from sim_node.layouts import random_arrangement, random_layout
 from tamp_bringup.task import goal_text, random_goal
 from tasks.family import Family, Range, Row, Viewpoint
+from tasks.two_rows import row_goal
 from tasks.view import camera_of
 
 #: Written and drawn alike: tenths of a millimetre.
@@ -73,19 +74,31 @@ def draw_task(family: Family, seed: int) -> Task:
 def _task_of_its_own(family: Family, seed: int) -> Task:
     rng = np.random.default_rng([seed, 2])
     blocks = int(rng.integers(family.blocks[0], family.blocks[1] + 1))
-    places = draw_row(family.row or Row((3, 3), (0.15, 0.15)), rng)
+    if family.rows:
+        places = family.rows.places(rng)
+    else:
+        places = draw_row(family.row or Row((3, 3), (0.15, 0.15)), rng)
     colors = [str(color) for color in rng.permutation(list(family.colors))[:blocks]]
     names = [object_name(color, str(rng.choice(list(family.shapes)))) for color in colors]
     sizes = {name: _uniform(family.sizes or (0.045, 0.045), rng) for name in names}
-    layout = random_arrangement(names, rng, len(places))
+    layout = (
+        family.rows.layout(names, rng)
+        if family.rows
+        else random_arrangement(names, rng, len(places))
+    )
     goal = _other_goal(layout, rng)
+    told = goal_text(goal)
+    if family.rows and rng.random() < 0.5:
+        told = row_goal(goal, family.rows.count, rng)
     highest = sum(sizes.values())
     view = family.viewpoint or Viewpoint(azimuth=0.0)
     azimuth = round(float(rng.uniform(-view.azimuth, view.azimuth)), _DIGITS)
     scene = {
         "places": [list(place) for place in places],
         "blocks": {"named": {name: {"size": [size] * 3} for name, size in sizes.items()}},
-        "cameras": [camera_of(view, places, highest, azimuth)],
+        "cameras": [
+            family.rows.view(rng) if family.rows else camera_of(view, places, highest, azimuth)
+        ],
     }
     parameters = {
         "perception_node": {"stack_positions": [value for x, y in places for value in (x, y, 0.0)]}
@@ -99,7 +112,7 @@ def _task_of_its_own(family: Family, seed: int) -> Task:
         **_heights(layout, goal),
     }
     rounded = {name: round(float(value), _DIGITS) for name, value in drawn.items()}
-    task = Task(family.name, seed, layout, goal_text(goal), scene, parameters, {}, rounded)
+    task = Task(family.name, seed, layout, told, scene, parameters, {}, rounded)
     return _with_errors(task, family)
 
 

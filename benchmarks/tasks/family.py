@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from scene_graph import BOX
+from tasks.two_rows import TwoRows
 
 #: Low and high end of what is drawn uniformly; of whole numbers both ends included.
 Range = tuple[float, float]
@@ -79,6 +80,8 @@ class Family:
         sizes: edge of a block, of its own each [m].
         shapes, colors: of the blocks, in families with scenes of their own.
         row: where the places are.
+        rows: where they are where there are two rows of them; half of the goals then speak of what
+            is in front of what.
         viewpoint: where the camera is.
         noise: parameters ``sensor.*`` of ``sim_node``; the seed of each task is added.
         masks: kinds of errors of the labels that the simulator publishes, each by one pixel, of
@@ -97,6 +100,7 @@ class Family:
     shapes: tuple[str, ...] = (BOX,)
     colors: tuple[str, ...] = NINE_COLORS
     row: Row | None = None
+    rows: TwoRows | None = None
     viewpoint: Viewpoint | None = None
     noise: Mapping[str, Any] = field(default_factory=dict)
     masks: tuple[str, ...] = ()
@@ -110,7 +114,7 @@ class Family:
     @property
     def has_own_scenes(self) -> bool:
         """Whether each task needs a scene file, and so a graph, of its own."""
-        return bool(self.sizes or self.row or self.viewpoint or self.shapes != (BOX,))
+        return bool(self.sizes or self.row or self.rows or self.viewpoint or self.shapes != (BOX,))
 
     @property
     def result(self) -> str:
@@ -166,6 +170,13 @@ FAMILIES: Final[tuple[Family, ...]] = (
         name="varied_masks",
         what="varied with masks of a detector: sizes, places, camera, noise, outlines",
         mask_source="segmentation_topic",
+    ),
+    Family(
+        "two_rows",
+        "two rows: 4 blocks on 6 places, some behind others",
+        blocks=(4, 4),
+        rows=TwoRows(),
+        success=0.98,
     ),
     Family(
         "disturbed",

@@ -10,7 +10,7 @@ from typing import Any
 
 from tamp_runtime.motion_report import ArmPlace, MotionReason, MotionReport, MotionState
 
-from planner_node.goals import Goal, parse_goal, resolve_goal
+from planner_node.goals import ResolveGoal, parse_goal, resolve_goal
 from planner_node.loop import (
     Clock,
     ClosedLoop,
@@ -24,6 +24,7 @@ from planner_node.loop import (
 )
 from planner_node.settings import Settings
 from scene_graph import (
+    ONE_ROW,
     Move,
     Place,
     SceneGraph,
@@ -201,10 +202,12 @@ class LoopBench:
         self.cancelled = self.cancelled or self.cancel_at(progress)
 
     @staticmethod
-    def read(goal: str) -> Callable[[Stacks], Goal]:
+    def read(goal: str) -> ResolveGoal:
         """What the loop gets of a goal."""
         parsed = parse_goal(goal)
-        return lambda seen: resolve_goal(parsed, [name for stack in seen for name in stack])
+        return lambda seen, rows=ONE_ROW: resolve_goal(
+            parsed, [name for stack in seen for name in stack], rows=rows
+        )
 
 
 def go_home(bench: LoopBench) -> Iterator[MotionReport]:

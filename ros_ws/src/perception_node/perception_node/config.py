@@ -43,6 +43,8 @@ class PerceptionConfig:
         min_confidence: least confidence of a confident graph (A.2.5).
         max_hidden: greatest hidden share of the column over a place.
         column_half_width, column_height: of the columns in which blocks can stand [m].
+        smallest_block: edge of the smallest cube that there may be: behind blocks, where none of
+            that size fits unseen, there is none [m].
         limits: what counts as standing.
     """
 
@@ -52,4 +54,5 @@ class PerceptionConfig:
     max_hidden: float = 0.005
     column_half_width: float = 0.035
     column_height: float = 0.36
+    smallest_block: float = 0.025
     limits: StabilityLimits = field(default_factory=StabilityLimits)

@@ -12,11 +12,13 @@ from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_runtime.messages.scene_graph import graph_to_message
 from visualization_msgs.msg import Marker, MarkerArray
 
-from scene_graph import BOX, COLORS, CYLINDER, PRISM, SPHERE, SceneGraph
+from scene_graph import BOX, COLORS, CYLINDER, PRISM, SPHERE, SceneGraph, is_hidden
 
 from .calibration import FramePose, LensModel
 from .pipeline import Perceived
 
+#: Colour of what is hidden, whatever it is.
+_UNKNOWN: Final = (0.5, 0.5, 0.5)
 _MARKER_TYPES: Final = {
     BOX: Marker.CUBE,
     CYLINDER: Marker.CYLINDER,
@@ -84,7 +86,7 @@ def markers_from_graph(graph: SceneGraph, header: Header) -> MarkerArray:
                 type=_MARKER_TYPES[item.shape],
                 pose=pose,
                 scale=Vector3(**dict(zip("xyz", item.size))),
-                color=ColorRGBA(r=red, g=green, b=blue, a=0.9),
+                color=ColorRGBA(r=red, g=green, b=blue, a=0.3 if is_hidden(item.name) else 0.9),
             )
         )
         markers.append(

@@ -14,6 +14,14 @@ class BadImageError(PerceptionError):
     """An image, segmentation, depth or camera that cannot be used."""
 
 
+class UnmeasuredError(BadImageError):
+    """A block of which too little depth is known; ``index`` is that of its segment."""
+
+    def __init__(self, message: str, index: int) -> None:
+        super().__init__(message)
+        self.index = index
+
+
 class WeightsError(PerceptionError):
     """A weights file that is missing, damaged or not ours; ``path`` is the file."""
 

@@ -14,11 +14,14 @@ from scene_graph import (
     SceneObject,
     Stacks,
     base_index,
+    front_relations,
     left_relations,
+    rows_of,
     up_relations,
 )
 
 from .blocks import Blocks
+from .hiding import Hidden
 from .names import Names
 from .observation import Observation
 from .places import Standing
@@ -35,8 +38,12 @@ def build_graph(
     standing: Standing,
     blocks: Blocks,
     names: Names,
+    hidden: Sequence[Hidden] = (),
 ) -> SceneGraph:
     """The scene graph of N blocks, at least one; objects are sorted by name.
+
+    Args:
+        hidden: where blocks may be that are not seen; something stands there for them.
 
     The confidence of a block is its IoU (A.2.5) times the visible share of its outline; that of
     the graph is the least of them, lowered by the hidden share of the places.
@@ -54,9 +61,15 @@ def build_graph(
             confidence=float(confidence[index]),
         )
         objects.append(item if pose is None else _posed(item, pose))
+    columns = [[names.names[item] for item in stack] for stack in standing.stacks]
+    for place in standing.places:
+        parts = [item for item in hidden if item.place == place.index]
+        for number, part in reversed(list(enumerate(parts, start=1))):
+            objects.append(part.stand_in(place, number))
+            columns[place.index].insert(part.level, objects[-1].name)
     return SceneGraph(
         objects=tuple(sorted(objects, key=lambda item: item.name)),
-        relations=_relations(names.names, standing),
+        relations=_relations(tuple(map(tuple, columns)), standing),
         places=_with_hidden_shares(standing, occlusion),
         confidence=float(confidence.min()) * (1.0 - occlusion.greatest),
     )
@@ -80,11 +93,13 @@ def _posed(item: SceneObject, pose: BlockPose) -> SceneObject:
     )
 
 
-def _relations(names: Sequence[str], standing: Standing) -> frozenset[Relation]:
-    """Up-relations with bases where the places are known, else up- and left-relations (A.2.2)."""
-    stacks: Stacks = tuple(tuple(names[i] for i in stack) for stack in standing.stacks)
+def _relations(stacks: Stacks, standing: Standing) -> frozenset[Relation]:
+    """Up-relations with bases where the places are known, else up- and left-relations (A.2.2).
+
+    Of two rows front-relations as well (5.4.3).
+    """
     relations = up_relations(stacks)
     if standing.places:
-        return relations
+        return relations | front_relations(stacks, rows_of(standing.places))
     on_blocks = {item for item in relations if base_index(item.object) is None}
     return frozenset(on_blocks) | left_relations(stacks)

@@ -104,7 +104,8 @@ PARAMETERS: Final = (
     ParameterSpec(
         "stack_positions",
         [value for position in _DEFAULT.stack_positions for value in position],
-        "x, y, z of each place on the table, from the left of the image, one after the other [m]",
+        "x, y, z of each place on the table, from the left of the image, one after the other; of "
+        "two rows those of the one that is nearer to the camera first [m]",
         minimum=-10.0,
         maximum=10.0,
         check=_positions_problem,
@@ -137,6 +138,14 @@ PARAMETERS: Final = (
         "height of that column [m]",
         minimum=0.02,
         maximum=3.0,
+    ),
+    ParameterSpec(
+        "smallest_block",
+        _DEFAULT.smallest_block,
+        "edge of the smallest cube that there may be [m]; of two rows of places, what is behind "
+        "blocks counts as hidden where one of that size fits unseen",
+        minimum=0.01,
+        maximum=0.2,
     ),
     ParameterSpec(
         "place_tolerance",
@@ -179,6 +188,7 @@ def config_from_parameters(values: Mapping[str, Any]) -> PerceptionConfig:
         max_hidden=values["max_hidden"],
         column_half_width=values["column_half_width"],
         column_height=values["column_height"],
+        smallest_block=values["smallest_block"],
         limits=replace(
             _DEFAULT.limits,
             place_tolerance=values["place_tolerance"],

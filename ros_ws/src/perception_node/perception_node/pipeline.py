@@ -13,12 +13,14 @@ from scene_graph import GraphStatus, SceneGraph
 from .alignment import aligned
 from .blocks import centres, find_blocks, measure
 from .config import PerceptionConfig
+from .covered import Seen, measure_seen, poorly_seen, uncovered
 from .errors import BadImageError, PerceptionError
 from .fallen import find_fallen, with_fallen
 from .graph import build_graph
+from .hiding import Hidden, find_hidden
 from .names import name_blocks
 from .observation import Observation
-from .places import Places, Points, RowOfPlaces
+from .places import Places, Points, RowOfPlaces, TwoRows
 from .places.occlusion import find_occlusion
 from .places.table import table_problem
 from .probability import evidence, load_parameters, probability
@@ -102,7 +104,7 @@ class Perception:
 
     def _perceive(self, observation: Observation) -> Perceived:
         """Raises PerceptionError if the observation cannot be used."""
-        config, places = self.config, self.places
+        config, places = self.config, self.places.seen_by(observation.camera)
         observation.check_values()
         taken, observation = observation, self._aligned(observation)
         segments = self._segments(observation)
@@ -118,32 +120,52 @@ class Perception:
         if len(segments) == 0:
             occlusion = find_occlusion(observation, segments, places, config)
             return refused(judge_empty(occlusion, config))
-        coordinates = self.locator.locate(self.locator.images(observation.rgb, segments))
-        surfaces = measure(observation, segments)
-        fallen = find_fallen(observation.rgb, segments, surfaces, coordinates)
+        seen = self._seen(observation, segments, places)
+        coordinates = self.locator.locate(self.locator.images(observation.rgb, seen.segments))
+        fallen = find_fallen(observation.rgb, seen.segments, seen.surfaces, coordinates)
         if fallen:
             occlusion = find_occlusion(observation, segments, places, config)
             verdict = judge_fallen(fallen[0], occlusion, config)
-        if len(fallen) == len(segments):
-            return refused(verdict)
-        # What is known of the others is told all the same; what has fallen may hide some of them.
-        upright = [index for index, item in enumerate(surfaces) if item.upright]
-        segments = segments.without([item.index for item in fallen])
-        if fallen:
-            coordinates = coordinates.of(upright)
-            surfaces = tuple(surfaces[index] for index in upright)
-        standing = places.stand(observation, segments, coordinates, centres(surfaces))
-        blocks = find_blocks(observation, segments, standing, surfaces)
+            if len(fallen) == len(seen.segments):
+                return refused(verdict)
+            # What is known of the others is told all the same; what has fallen may hide some.
+            coordinates = coordinates.of(seen.upright)
+            seen = seen.standing()
+        while True:
+            segments = seen.segments
+            standing = places.stand(observation, segments, coordinates, centres(seen.surfaces))
+            blocks = find_blocks(
+                *(observation, segments, standing, seen.surfaces),
+                *(seen.partly, config.smallest_block),
+            )
+            if seen.covered:
+                whole = uncovered(observation, seen, blocks)
+                coordinates = self.locator.locate(self.locator.images(*whole))
+            if not (poor := poorly_seen(seen, blocks, standing.stacks, coordinates.iou, config)):
+                break
+            seen = seen.without(poor, observation, places.places)
+            coordinates = self.locator.locate(self.locator.images(observation.rgb, seen.segments))
         occlusion = find_occlusion(observation, segments, places, config, blocks.poses)
+        hidden: tuple[Hidden, ...] = ()
+        if isinstance(places, TwoRows):
+            hidden = find_hidden(observation, segments, standing, blocks, seen.glimpses, config)
         names = name_blocks(observation.rgb, segments, blocks.shapes, standing.stacks)
-        graph = build_graph(observation, segments, occlusion, coordinates, standing, blocks, names)
+        graph = build_graph(
+            observation, segments, occlusion, coordinates, standing, blocks, names, hidden
+        )
         if not fallen:
-            verdict = judge(graph, occlusion, standing, blocks, names, config)
+            verdict = judge(graph, occlusion, standing, blocks, names, config, hidden)
         known = evidence(graph, verdict.status, blocks, names, occlusion, observation.noise)
         verdict = with_grain(verdict, observation.noise)
         likely = probability(known, self._probability)
         graph = with_fallen(graph, fallen) if fallen else graph
         return Perceived(graph, *verdict, segments, likely, known)
+
+    def _seen(self, observation: Observation, segments: Segments, places: Places) -> Seen:
+        """The blocks measured; of two rows without those that are mostly covered."""
+        if isinstance(places, TwoRows) and observation.depth is not None:
+            return measure_seen(observation, segments, places.places)
+        return Seen(segments, measure(observation, segments))
 
     def _aligned(self, observation: Observation) -> Observation:
         """With edges where they are, where the places are seen and depth can be moved to colour."""

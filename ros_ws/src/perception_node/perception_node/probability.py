@@ -60,7 +60,7 @@ def evidence(
         graph: of at least one block.
         noise: of the picture's channels [0..255].
     """
-    iou = [item.confidence for item in graph.objects]
+    iou = [item.confidence for item in graph.objects if item.label] or [0.0]
     worst = max((max(block.deviation[:2]) for block in blocks.measured), default=0.0)
     values = (
         1.0,

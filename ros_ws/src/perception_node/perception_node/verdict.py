@@ -7,15 +7,17 @@ the places, and if the visual module reproduces what it saw (A.2.5).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from scene_graph import GraphStatus, SceneGraph, base_name
+from scene_graph import GraphStatus, SceneGraph, base_name, is_hidden
 
 from .blocks import Blocks, MeasuredBlock
 from .config import PerceptionConfig, StabilityLimits
 from .fallen import FallenBlock
+from .hiding import Hidden, hidden_by_blocks
 from .names import Names
 from .places import Standing
 from .places.occlusion import Occlusion
@@ -40,13 +42,18 @@ def judge(
     blocks: Blocks,
     names: Names,
     config: PerceptionConfig,
+    hidden: Sequence[Hidden] = (),
 ) -> Verdict:
-    """The first reason not to plan on a graph, or that there is none."""
+    """The first reason not to plan on a graph, or that there is none.
+
+    Args:
+        hidden: where blocks may be that other blocks hide.
+    """
     if sentence := occluded(occlusion, config.max_hidden):
         return Verdict(GraphStatus.OCCLUDED, sentence)
     if standing.problem:
         return Verdict(GraphStatus.UNSTABLE, f"{standing.problem}; put every block on a place")
-    if sentence := instability(blocks, names.names, standing, config.limits):
+    if sentence := instability(blocks, names.names, standing, config.limits, hidden):
         return Verdict(GraphStatus.UNSTABLE, sentence)
     if names.doubt:
         return Verdict(GraphStatus.LOW_CONFIDENCE, names.doubt)
@@ -55,13 +62,17 @@ def judge(
     if sentence := doubtful(blocks, names.names, config.limits):
         return Verdict(GraphStatus.LOW_CONFIDENCE, sentence)
     if graph.confidence < config.min_confidence:
-        worst = min(graph.objects, key=lambda item: item.confidence)
+        seen = [item for item in graph.objects if not is_hidden(item.name)]
+        worst = min(seen, key=lambda item: item.confidence)
         return Verdict(
             GraphStatus.LOW_CONFIDENCE,
             f"the visual module reproduces {worst.name} with a confidence of only "
             f"{worst.confidence:.2f} (required: {config.min_confidence:.2f}); look again, "
             "check the picture and its masks, or train it on such scenes",
         )
+    if hidden:
+        sentence = hidden_by_blocks(hidden, standing, blocks, names.names)
+        return Verdict(GraphStatus.HIDDEN, sentence)
     return Verdict(GraphStatus.CONFIDENT)
 
 
@@ -113,22 +124,32 @@ def occluded(occlusion: Occlusion, max_hidden: float) -> str:
 
 
 def instability(
-    blocks: Blocks, names: tuple[str, ...], standing: Standing, limits: StabilityLimits
+    blocks: Blocks,
+    names: tuple[str, ...],
+    standing: Standing,
+    limits: StabilityLimits,
+    hidden: Sequence[Hidden] = (),
 ) -> str:
     """A sentence about the first block that does not stand, or an empty string.
+
+    What stands on hidden blocks does, as far as anybody can see.
 
     Nothing is said of blocks that were not measured, or where it is not known on which places.
     """
     if not blocks.measured:
         return ""
+    on_hidden = {(item.place, item.level) for item in hidden}
     for stack, place in zip(standing.stacks, standing.places):
         below: MeasuredBlock | None = None
         under = "the table"
-        for item in stack:
+        for level, item in enumerate(stack):
             block, name = blocks.measured[item], names[item]
             pose = block.pose
             if block.tilt > limits.tilt:
                 return f"{name} leans by {np.degrees(block.tilt):.0f} degrees; {_TIDY_UP}"
+            if (place.index, level) in on_hidden:
+                below, under = block, name
+                continue
             support = place.position_world[2] if below is None else below.pose.top
             if abs(pose.bottom - support) > limits.gap:
                 return f"{name} {_height_text(pose.bottom - support, under, below is None)}"

@@ -20,10 +20,10 @@ from tamp_runtime.messages.scene_graph import (
 )
 from tamp_runtime.messages.stamps import nanoseconds, stamp_from_nanoseconds
 
-from scene_graph import GraphStatus, SceneGraph, Stacks
+from scene_graph import ONE_ROW, GraphStatus, SceneGraph
 
 from .errors import GoalImageError, InvalidGoalError, NotConfidentError
-from .goals import Goal, complete_goal, goal_of_picture, parse_goal, resolve_goal
+from .goals import ResolveGoal, complete_goal, goal_of_picture, parse_goal, resolve_goal
 from .loop import Outcome, Plan, Progress, Scene, Sighting, scene_in
 from .search.peers.read_plan import state_after
 
@@ -120,7 +120,7 @@ def outcome_to_message(outcome: Outcome) -> AchieveGoal.Result:
     )
 
 
-def read_goal(request: Any, interpret: Interpret) -> Callable[[Stacks], Goal]:
+def read_goal(request: Any, interpret: Interpret) -> ResolveGoal:
     """Everything about a goal that needs no scene; the result finds its objects in a scene.
 
     Args:
@@ -138,8 +138,8 @@ def read_goal(request: Any, interpret: Interpret) -> Callable[[Stacks], Goal]:
         return lambda seen: complete_goal(state_after(request.plan, seen))
     if not has_image:
         parsed = parse_goal(request.goal)
-        return lambda seen: resolve_goal(
-            parsed, [name for stack in seen for name in stack], len(seen)
+        return lambda seen, rows=ONE_ROW: resolve_goal(
+            parsed, [name for stack in seen for name in stack], len(seen), rows
         )
     if request.goal.strip():
         raise InvalidGoalError("there is a goal text and a goal image; give one of them", 0)
@@ -148,7 +148,7 @@ def read_goal(request: Any, interpret: Interpret) -> Callable[[Stacks], Goal]:
         shown = scene_in(sighting_from_message(message))
     except NotConfidentError as error:
         raise GoalImageError(f"the goal image cannot be used: {error}") from error
-    return lambda seen: goal_of_picture(shown.stacks, seen)
+    return lambda seen, rows=ONE_ROW: goal_of_picture(shown.stacks, seen).on(rows)
 
 
 def _header(stamp: int, frame_id: str) -> Header:

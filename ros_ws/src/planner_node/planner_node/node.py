@@ -24,7 +24,7 @@ from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.presence import Presence
 from tamp_runtime.qos import NEWEST, STATUS
 
-from scene_graph import Stacks
+from scene_graph import ONE_ROW
 
 from .conversions import (
     FeedbackWriter,
@@ -42,22 +42,27 @@ from .errors import (
     PlannerError,
     SearchError,
 )
-from .goals import Goal
+from .goals import Goal, ResolveGoal
 from .image_client import ImageClient
 from .loop import (
     ClosedLoop,
     MotionLink,
     Outcome,
     Progress,
+    Scene,
     SceneWatch,
     Status,
+    decided,
     given_plan_in,
+    meaning,
     plan_for,
     plan_in,
+    uncover_in,
 )
 from .loop.account import in_the_view
 from .parameters import PARAMETERS
 from .plan_publisher import PlanPublisher
+from .search import SearchResult
 from .settings import LATENT, Settings
 
 if TYPE_CHECKING:
@@ -184,11 +189,7 @@ class PlannerNode(Node):
         if self._latent is not None:
             goal, found = self._latent.plan(request, scene.stacks, scene.stamp)
         else:
-            goal = resolve(scene.stacks)
-            if given := request.plan.strip():
-                found = given_plan_in(scene, given, goal, self._settings)
-            else:
-                found = plan_in(scene, goal, self._settings, self._is_shut_down)
+            goal, found = self._plan_in(scene, resolve, request.plan.strip())
         plan = plan_for(scene, goal, found, self._scenes.now())
         response.expanded, response.planning_seconds = found.expanded, found.seconds
         response.plan, response.states = plan_to_message(plan), predicted_to_messages(plan)
@@ -199,12 +200,29 @@ class PlannerNode(Node):
         response.status = int(Status.SUCCESS)
         told = f"{len(plan.moves)} moves to '{goal}'"
         response.message = "; ".join(filter(None, (told, found.note)))
+        if scene.hidden:
+            wanted = f"'{request.goal}'" if request.goal else "the goal image"
+            moves = "1 move" if len(plan.moves) == 1 else f"{len(plan.moves)} moves"
+            response.message = f"{moves} to look, then {wanted} is planned for: {found.note}"
         if request.execute:
             self._check_conflict()
             claim = _Claim("a plan of plan_to_goal", self._is_shut_down)
             with self._claimed(claim, self._motion.check_free):
                 self._motion.start(plan)
             response.message += f"; published as plan {plan.plan_id}"
+
+    def _plan_in(self, scene: Scene, resolve: ResolveGoal, given: str) -> tuple[Goal, SearchResult]:
+        """A plan to the goal, or the one given, or where blocks hide others one that uncovers them."""
+        if not scene.hidden:
+            goal = resolve(scene.stacks, scene.rows)
+            if given:
+                return goal, given_plan_in(scene, given, goal, self._settings)
+            return goal, plan_in(scene, goal, self._settings, self._is_shut_down)
+        meant = meaning(resolve, scene)
+        if meant is not None and decided(meant, scene) and meant.holds(scene.stacks):
+            return meant, plan_in(scene, meant, self._settings, self._is_shut_down)
+        found = uncover_in(scene, meant, self._settings, self._is_shut_down)
+        return meant or Goal(()), found
 
     def _on_achieve_goal(self, handle: ServerGoalHandle) -> AchieveGoal.Result:
         request, feedback = handle.request, FeedbackWriter()
@@ -215,7 +233,7 @@ class PlannerNode(Node):
         def report(progress: Progress) -> None:
             handle.publish_feedback(feedback.message(progress))
 
-        def read() -> Callable[[Stacks], Goal]:
+        def read() -> ResolveGoal:
             return self._read_goal(request, cancelled)
 
         motion, conflict = self._motion, self._presence.conflict
@@ -236,13 +254,13 @@ class PlannerNode(Node):
         self._finish(handle, outcome)
         return outcome_to_message(outcome)
 
-    def _read_goal(self, request: Any, cancelled: Callable[[], bool]) -> Callable[[Stacks], Goal]:
+    def _read_goal(self, request: Any, cancelled: Callable[[], bool]) -> ResolveGoal:
         """Of pictures as codes the goal is the state that their plan leads to."""
         latent = self._latent
         if latent is not None and request.plan.strip():
             raise InvalidGoalError("representation latent takes no plan; give a goal image", 0)
         if latent is not None:
-            return lambda seen: latent.plan(request, seen)[0]
+            return lambda seen, _rows=ONE_ROW: latent.plan(request, seen)[0]
         return read_goal(request, functools.partial(self._images.interpret, cancelled=cancelled))
 
     def _latent_view(self) -> LatentView | None:

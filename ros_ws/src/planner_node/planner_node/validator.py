@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from scene_graph import (
     ABOVE,
+    FRONT,
     LEFT,
     NOT,
     PREDICATES,
@@ -20,7 +21,7 @@ from scene_graph import (
     UP,
     Move,
     Relation,
-    Spot,
+    Rows,
     base_index,
 )
 
@@ -67,12 +68,12 @@ def validate_plan(
         stacks[move.target].append(stacks[move.source].pop())
         _compare(stacks, states, step + 1)
     for relation in goal.relations:
-        if not _holds(relation, stacks):
+        if not _holds(relation, stacks, goal.rows):
             raise InvalidPlanError(
                 f"after the last move '{relation.words}' is not true", len(moves)
             )
     for count in goal.counts:
-        true = [relation for relation in count.relations if _holds(relation, stacks)]
+        true = [relation for relation in count.relations if _holds(relation, stacks, goal.rows)]
         if not count.least <= len(true) <= count.most:
             raise InvalidPlanError(f"after the last move '{count}' is not true", len(moves))
 
@@ -125,20 +126,24 @@ def _compare(
         )
 
 
-def _holds(relation: Relation, stacks: list[list[str]]) -> bool:
+def _holds(relation: Relation, stacks: list[list[str]], rows: Rows) -> bool:
     subject, object_ = (_spot(name, stacks) for name in (relation.subject, relation.object))
     if subject is None or object_ is None:
         return False
     if relation.predicate.startswith(NOT):
         positive = relation.predicate.removeprefix(NOT)
-        return not _holds(Relation(relation.subject, positive, relation.object), stacks)
+        return not _holds(Relation(relation.subject, positive, relation.object), stacks, rows)
     if relation.predicate == UP:
         return subject == (object_[0], object_[1] + 1)
     if relation.predicate == ABOVE:
         return subject[0] == object_[0] and subject[1] > object_[1]
+    several = bool(rows.rows)
     if relation.predicate == LEFT:
-        return subject[0] < object_[0]
-    return PREDICATES[relation.predicate].holds(Spot(*subject), Spot(*object_))
+        columns = rows.columns if several else range(len(stacks))
+        return columns[subject[0]] < columns[object_[0]]
+    if relation.predicate == FRONT:
+        return several and rows.rows[subject[0]] < rows.rows[object_[0]]
+    return PREDICATES[relation.predicate].holds(rows.spot(*subject), rows.spot(*object_))
 
 
 def _spot(name: str, stacks: list[list[str]]) -> tuple[int, int] | None:

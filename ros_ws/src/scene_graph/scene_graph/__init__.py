@@ -3,6 +3,7 @@
 
 from .errors import ImpossibleMoveError, InconsistentRelationsError, SceneGraphError
 from .graph import GraphStatus, SceneGraph
+from .hidden import HIDDEN, hidden_name, hidden_place, hidden_places, is_hidden
 from .moves import Move, all_moves
 from .objects import (
     BASIC_COLORS,
@@ -34,6 +35,7 @@ from .predicates import (
     Spot,
 )
 from .relations import Relation, format_relations
+from .rows import ONE_ROW, Rows, front_relations, in_rows, rows_of
 from .stacks import (
     Stacks,
     apply_move,
@@ -53,8 +55,10 @@ __all__ = [
     "CYLINDER",
     "FLAT_TOPPED",
     "FRONT",
+    "HIDDEN",
     "LEFT",
     "NOT",
+    "ONE_ROW",
     "PREDICATES",
     "PRISM",
     "ROW_OF_THREE",
@@ -72,6 +76,7 @@ __all__ = [
     "Predicate",
     "Predicates",
     "Relation",
+    "Rows",
     "SceneGraph",
     "SceneGraphError",
     "SceneObject",
@@ -83,10 +88,17 @@ __all__ = [
     "base_name",
     "format_relations",
     "format_stacks",
+    "front_relations",
+    "hidden_name",
+    "hidden_place",
+    "hidden_places",
+    "in_rows",
+    "is_hidden",
     "left_relations",
     "object_name",
     "quaternion_from_yaw",
     "rotation_from_quaternion",
+    "rows_of",
     "split_object_name",
     "spots_of",
     "stacks_from_relations",

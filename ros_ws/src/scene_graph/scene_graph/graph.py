@@ -6,9 +6,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 
+from .errors import InconsistentRelationsError
 from .objects import SceneObject
 from .places import Place
+from .predicates import FRONT
 from .relations import Relation
+from .rows import front_relations, rows_of
 from .stacks import Stacks, stacks_from_relations
 
 
@@ -21,6 +24,7 @@ class GraphStatus(IntEnum):
     UNSTABLE = 3
     NO_OBJECTS = 4
     BAD_IMAGE = 5
+    HIDDEN = 6
 
 
 @dataclass(frozen=True)
@@ -50,5 +54,19 @@ class SceneGraph:
         raise KeyError(name)
 
     def stacks(self) -> Stacks:
-        """The state that the relations describe; see :func:`stacks_from_relations`."""
-        return stacks_from_relations(self.relations, len(self.places))
+        """The state that the relations describe; see :func:`stacks_from_relations`.
+
+        Raises:
+            InconsistentRelationsError: also where there are two rows and the front-relations are
+                not those of the stacks (5.4.3).
+        """
+        stacks = stacks_from_relations(self.relations, len(self.places))
+        told = {item for item in self.relations if item.predicate == FRONT}
+        odd = told ^ front_relations(stacks, rows_of(self.places))
+        if odd and told:
+            example = min(odd)
+            raise InconsistentRelationsError(
+                f"'{example.words}' does not fit what stands on the places",
+                (example.subject, example.object),
+            )
+        return stacks

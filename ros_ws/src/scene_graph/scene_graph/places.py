@@ -20,18 +20,26 @@ class Place:
     """A place.
 
     Attributes:
-        index: from the left from 0.
+        index: from the left from 0; of two rows those of the one nearer to the camera come first.
         position_world: its centre on the table's surface [m].
         hidden: how much of the column over it something hid that is not a block, in the picture
             that its graph was made of, in 0..1; of no matter to whether it is the same place.
         seen_to: up to which height over it nothing hid the column, likewise [m]; 0 where that is
             not known.
+        row: 0 for the row that is nearest to the camera.
+        column: rank from the left among the places of all rows, see :class:`.rows.Rows`; None: that
+            of its index, as in one row.
+        clear: for each place, how high a stack on this one may be without hiding anything of a
+            block there from the camera [m]; empty: no stack hides another one.
     """
 
     index: int
     position_world: Point
     hidden: float = field(default=0.0, compare=False)
     seen_to: float = field(default=0.0, compare=False)
+    row: int = 0
+    column: int | None = None
+    clear: tuple[float, ...] = field(default=(), compare=False)
 
 
 def base_name(index: int) -> str:

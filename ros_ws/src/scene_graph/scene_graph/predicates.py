@@ -22,10 +22,24 @@ NOT: Final = "not_"
 
 
 class Spot(NamedTuple):
-    """Where something is in a state: its stack, from 0, and its level there; a base's is -1."""
+    """Where something is in a state.
+
+    Attributes:
+        stack: from 0.
+        level: in its stack; a base's is -1.
+        row: of its place, 0 for the one that is nearest to the camera.
+        rank: of its place from the left among those of all rows; None: that of its index.
+    """
 
     stack: int
     level: int
+    row: int = 0
+    rank: int | None = None
+
+    @property
+    def column(self) -> int:
+        """How far right its place is; places of equal columns lie one behind the other."""
+        return self.stack if self.rank is None else self.rank
 
 
 @dataclass(frozen=True)
@@ -137,8 +151,8 @@ class Predicates:
         }
 
 
-#: The predicates of 3.2 and of goals. ``front`` is true of nothing as long as there is one row. The
-#: word "the" is not part of a phrase: goals are read without it.
+#: The predicates of 3.2 and of goals. ``front`` is true of nothing where there is one row. The word
+#: "the" is not part of a phrase: goals are read without it.
 PREDICATES: Final = Predicates(
     Predicate(
         UP,
@@ -167,7 +181,7 @@ PREDICATES: Final = Predicates(
     ),
     Predicate(
         LEFT,
-        lambda subject, object_: subject.stack < object_.stack,
+        lambda subject, object_: subject.column < object_.column,
         phrases=(
             "left of", "to left of", "left", "on left of", "at left of", "on left side of",
             "to left side of", "somewhere left of", "somewhere to left of", "left from",
@@ -181,11 +195,22 @@ PREDICATES: Final = Predicates(
         takes_place=False,
     ),
     Predicate(
+        FRONT,
+        lambda subject, object_: subject.row < object_.row,
+        phrases=(
+            "in front of", "in front", "front", "front of", "to front of", "somewhere in front of",
+            "nearer than", "closer than", "in a stack in front of",
+        ),
+        inverse_phrases=("behind", "to back of", "somewhere behind", "in a stack behind"),
+        takes_place=False,
+    ),
+    Predicate(
         BESIDE,
-        lambda subject, object_: abs(subject.stack - object_.stack) == 1,
+        lambda subject, object_: (
+            subject.row == object_.row and abs(subject.stack - object_.stack) == 1
+        ),
         phrases=("next to", "right next to", "directly next to", "beside", "right beside",
                  "adjacent to", "neighbouring"),
         takes_place=False,
     ),
-    Predicate(FRONT, lambda _subject, _object: False, takes_place=False),
 )  # fmt: skip

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from .errors import ImpossibleMoveError, InconsistentRelationsError
 from .moves import Move
@@ -16,12 +16,16 @@ from .relations import Relation
 Stacks = tuple[tuple[str, ...], ...]
 
 
-def spots_of(stacks: Stacks) -> dict[str, Spot]:
-    """Where every block and every base is; see :class:`Spot`."""
-    spots = {base_name(index): Spot(index, -1) for index in range(len(stacks))}
+def spots_of(stacks: Stacks, spot: Callable[[int, int], Spot] = Spot) -> dict[str, Spot]:
+    """Where every block and every base is; see :class:`Spot`.
+
+    Args:
+        spot: makes one of stack and level, see :meth:`.rows.Rows.spot`; as in one row by default.
+    """
+    spots = {base_name(index): spot(index, -1) for index in range(len(stacks))}
     for index, stack in enumerate(stacks):
         for level, name in enumerate(stack):
-            spots[name] = Spot(index, level)
+            spots[name] = spot(index, level)
     return spots
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,10 @@ from scene_graph import (
     SceneObject,
     Stacks,
     base_name,
+    front_relations,
+    in_rows,
     rotation_from_quaternion,
+    rows_of,
 )
 from scene_graph.places import Point
 
@@ -46,7 +50,21 @@ def true_scene_graph(world: World) -> SceneGraph:
                 world.label(name),
             )
         )
-    return graph_of_poses(objects, world.config.stack_positions)
+    graph = graph_of_poses(objects, world.config.stack_positions)
+    x, y, z = (float(value) for value in world.config.camera.world_from_optical[:3, 3])
+    return in_front_of(graph, (x, y, z))
+
+
+def in_front_of(graph: SceneGraph, camera: Point) -> SceneGraph:
+    """A graph with what two rows of places are to a camera, and the relations between them.
+
+    Args:
+        camera: its position in world [m].
+    """
+    places = in_rows([place.position_world for place in graph.places], camera)
+    stacks, _ = standing_blocks(graph)
+    relations = graph.relations | front_relations(stacks, rows_of(places))
+    return replace(graph, places=places, relations=relations)
 
 
 def graph_of_poses(objects: Sequence[SceneObject], positions: Sequence[Point]) -> SceneGraph:

@@ -13,7 +13,7 @@ from planner_node.cli.client import PlannerClient
 from planner_node.cli.unavailable import PlannerUnavailableError
 from planner_node.errors import PlannerError
 from planner_node.goals import parse_goal, resolve_goal
-from scene_graph import SceneGraph
+from scene_graph import SceneGraph, rows_of
 
 from .processes import NodeDiedError
 from .scene_observer import SceneObserver, SimulationError, true_stacks
@@ -108,6 +108,7 @@ def goal_holds(goal: str, truth: SceneGraph) -> bool:
     if not stacks:
         return False
     try:
-        return resolve_goal(parse_goal(goal), truth.names).holds(stacks)
+        meant = resolve_goal(parse_goal(goal), truth.names).on(rows_of(truth.places))
+        return meant.holds(stacks)
     except PlannerError:  # of a block that is not there, nothing holds
         return False

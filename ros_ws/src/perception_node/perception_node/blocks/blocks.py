@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,10 +66,16 @@ def find_blocks(
     segments: Segments,
     standing: Standing,
     surfaces: tuple[BlockSurface, ...],
+    covered: Collection[int] = (),
+    smallest: float = 0.0,
 ) -> Blocks:
-    """The blocks in their stacks; where they were not measured, only their shapes are told."""
+    """The blocks in their stacks; where they were not measured, only their shapes are told.
+
+    Args:
+        covered, smallest: see :func:`pose_blocks`.
+    """
     if not surfaces:
         shapes = tuple(shape_from_outline(observation.rgb, segment.part) for segment in segments)
         return Blocks(shapes)
-    measured = pose_blocks(surfaces, standing.stacks, standing.table_heights)
+    measured = pose_blocks(surfaces, standing.stacks, standing.table_heights, covered, smallest)
     return Blocks(tuple(block.shape for block in measured), measured)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception_node.camera import PinholeCamera
-from perception_node.errors import BadImageError
+from perception_node.errors import BadImageError, UnmeasuredError
 from perception_node.segment import Segments
 from scene_graph import BOX, CYLINDER
 
@@ -64,6 +64,7 @@ class BlockSurface:
         rival: a shape that explains it nearly as well; empty: there is none.
         upright: whether it is a block that stands upright; else nothing but about where it is can
             be relied on.
+        seen_low: z of about the lowest of its points that are seen [m].
     """
 
     shape: str
@@ -76,6 +77,7 @@ class BlockSurface:
     tilt: float = 0.0
     rival: str = ""
     upright: bool = True
+    seen_low: float = 0.0
 
 
 def measure_blocks(
@@ -96,19 +98,20 @@ def measure_blocks(
         edge_doubt: see :class:`Observation` [px].
 
     Raises:
-        BadImageError: if too little depth of a block is known; the sentence names its label.
+        UnmeasuredError: if too little depth of a block is known; the sentence names its label.
     """
     above = covering(segments, depth, camera)
     evidence = []
-    for segment, covers in zip(segments, above):
+    for index, (segment, covers) in enumerate(zip(segments, above)):
         try:
             evidence.append(
                 evidence_of(segment, segments, depth, camera, noise, covers, sure, edge_doubt)
             )
         except BadImageError as error:
-            raise BadImageError(
+            raise UnmeasuredError(
                 f"the depth of the object with label {segment.label} cannot be used: {error}; "
-                "check the depth camera"
+                "check the depth camera",
+                index,
             ) from error
     surfaces = []
     fits, rivals = _best(evidence, noise)
@@ -262,6 +265,7 @@ def _surface(best: Fit, evidence: Evidence) -> BlockSurface:
     return BlockSurface(
         best.model.shape, (x, y), yaw, (along, across), low, high, covariance,
         _tilt(best, evidence) if best.model.shape == BOX else 0.0,
+        seen_low=float(np.quantile(evidence.points[:, 2], 0.02)),
     )  # fmt: skip
 
 

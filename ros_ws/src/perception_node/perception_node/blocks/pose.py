@@ -8,7 +8,7 @@ or cubes of one size, they are taken to be.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -88,6 +88,8 @@ def pose_blocks(
     surfaces: Sequence[BlockSurface],
     stacks: Sequence[Sequence[int]],
     table_heights: Sequence[float],
+    covered: Collection[int] = (),
+    smallest: float = 0.0,
 ) -> tuple[MeasuredBlock, ...]:
     """Joins the measurements of a scene.
 
@@ -95,6 +97,9 @@ def pose_blocks(
         surfaces: of all N blocks.
         stacks: indices into ``surfaces``, from the bottom, of each stack.
         table_heights: z of the surface under each stack [m].
+        covered: those of which other stacks cover a part: they say nothing of the others, and where
+            they end that is not seen is told by what they stand on only if nothing fits under them.
+        smallest: height of the lowest block that may be under such a one [m].
     """
     estimates = [
         _Estimate(
@@ -104,10 +109,21 @@ def pose_blocks(
         for item in surfaces
     ]
     for stack, table in zip(stacks, table_heights):
-        _stand([estimates[index] for index in stack], table)
-    flat = [estimate for item, estimate in zip(surfaces, estimates) if item.shape != SPHERE]
-    _take_for_cubes([e for item, e in zip(surfaces, estimates) if item.shape == BOX])
-    _take_for_equal(flat)
+        _stand([estimates[index] for index in stack if index not in covered], table)
+    whole = [
+        (item, estimate)
+        for index, (item, estimate) in enumerate(zip(surfaces, estimates))
+        if index not in covered
+    ]
+    cubes = _take_for_cubes([estimate for item, estimate in whole if item.shape == BOX])
+    edge = _take_for_equal([estimate for item, estimate in whole if item.shape != SPHERE])
+    for index in covered:
+        if cubes and surfaces[index].shape == BOX:
+            _take_for_cubes([estimates[index]], edge)
+    for stack, table in zip(stacks, table_heights):
+        if any(index in covered for index in stack):
+            tower = [(surfaces[index], estimates[index]) for index in stack]
+            _stand_covered(tower, table, smallest)
     return tuple(_posed(item, estimate) for item, estimate in zip(surfaces, estimates))
 
 
@@ -124,25 +140,49 @@ def _stand(tower: Iterable[_Estimate], table: float) -> None:
         (level, doubt), below = block.of(_HIGH), block
 
 
-def _take_for_cubes(boxes: Sequence[_Estimate]) -> None:
-    """If every box could be a cube, as far as its edges are known, they all are."""
+def _stand_covered(
+    tower: Iterable[tuple[BlockSurface, _Estimate]], table: float, smallest: float
+) -> None:
+    """As :func:`_stand` of a tower of which other stacks cover a part."""
+    level = table
+    for surface, block in tower:
+        low, doubt = block.of(_LOW)
+        seen = doubt < TELLS and abs(low - level) < STANDS[0] * doubt + STANDS[1]
+        if seen or (doubt >= TELLS and surface.seen_low < level + smallest):
+            block.condition(_LOW, level, CONTACT)
+        level = block.of(_HIGH)[0]
+
+
+def _take_for_cubes(boxes: Sequence[_Estimate], edge: float | None = None) -> bool:
+    """If every box could be a cube, as far as its edges are known, they all are.
+
+    Args:
+        edge: of the cube, where it is known [m].
+
+    Returns:
+        Whether they are.
+    """
     edges = [[box.of(row) for row in _EDGES] for box in boxes]
-    if not _agree([(values, _mean(values)) for values in edges]):
-        return
+    if not _agree([(values, _mean(values) if edge is None else edge) for values in edges]):
+        return False
     for box in boxes:
         for row in (_ALONG - _ACROSS, _ALONG - _EDGES[2], _ACROSS - _EDGES[2]):
             box.condition(row, 0.0, CUBE)
+        if edge is not None:
+            box.condition(_ALONG, edge, EQUAL)
+    return bool(boxes)
 
 
-def _take_for_equal(blocks: Sequence[_Estimate]) -> None:
-    """If all edges could be of one length, as far as they are known, they are."""
+def _take_for_equal(blocks: Sequence[_Estimate]) -> float | None:
+    """If all edges could be of one length, as far as they are known, they are: it; else None."""
     edges = [block.of(row) for block in blocks for row in _EDGES]
     common = _mean(edges)
     if common is None or not _agree([(edges, common)]):
-        return
+        return None
     for block in blocks:
         for row in _EDGES:
             block.condition(row, common, EQUAL)
+    return common
 
 
 #: Values and their standard deviations [m].

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Places: which stack stands where, and what hides them.
 
-:mod:`.row` holds everything that is assumed of places in a row; another arrangement is another
-:class:`Places`, given to a perception by ``Perception(locator, places=…)``.
+:mod:`.row` holds everything that is assumed of places in a row, :mod:`.two_rows` what is different
+where one row is behind another; another arrangement is another :class:`Places`, given to a
+perception by ``Perception(locator, places=…)``.
 """
 
 from .row import RowOfPlaces
 from .standing import Places, Points, Standing
+from .two_rows import TwoRows
 
-__all__ = ["Places", "Points", "RowOfPlaces", "Standing"]
+__all__ = ["Places", "Points", "RowOfPlaces", "Standing", "TwoRows"]

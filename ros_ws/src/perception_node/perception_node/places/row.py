@@ -23,9 +23,10 @@ from perception_node.errors import BadImageError, PlacesError
 from perception_node.observation import Observation
 from perception_node.segment import Segments
 from perception_node.visual_module.coordinates import Coordinates
-from scene_graph import ROW_OF_THREE, Place
+from scene_graph import ROW_OF_THREE, Place, in_rows
 
-from .standing import Points, Standing
+from .hidden import with_clear_heights
+from .standing import Places, Points, Standing
 
 #: Gaps and runs narrower than this part of the image's width are noise of the mask.
 NOISE_WIDTH: Final = 0.016
@@ -44,6 +45,22 @@ class RowOfPlaces:
 
     def __init__(self, positions_world: Points = ROW_OF_THREE) -> None:
         self.places = tuple(Place(i, position) for i, position in enumerate(positions_world))
+
+    def seen_by(self, camera: PinholeCamera | None) -> Places:
+        """The same places in two rows, where they lie so for a camera."""
+        from .two_rows import TwoRows  # which is a row of places itself
+
+        if camera is None:
+            return self
+        places = in_rows(self.positions, _point(camera))
+        if not any(place.row for place in places):
+            return self
+        return TwoRows(with_clear_heights(places, camera))
+
+    @property
+    def positions(self) -> Points:
+        """Their centres in world [m]."""
+        return tuple(place.position_world for place in self.places)
 
     def stand(
         self,
@@ -132,6 +149,11 @@ class RowOfPlaces:
     def _without_places(self, stacks: tuple[tuple[int, ...], ...], problem: str = "") -> Standing:
         height = self.places[0].position_world[2] if self.places else 0.0
         return Standing(stacks, (height,) * len(stacks), problem=problem)
+
+
+def _point(camera: PinholeCamera) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in camera.position_world)
+    return x, y, z
 
 
 def count_stacks(mask: NDArray[np.bool_]) -> int:

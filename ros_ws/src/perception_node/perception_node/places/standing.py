@@ -45,6 +45,10 @@ class Places(Protocol):
         """The m places; none where they are unknown."""
         ...
 
+    def seen_by(self, camera: PinholeCamera | None) -> Places:
+        """How the same places lie for a camera."""
+        ...
+
     def stand(
         self,
         observation: Observation,

@@ -2,7 +2,7 @@
 """Goals: what people type, what it means in a scene, and what excludes itself."""
 
 from .contradictions import check_contradictions, find_contradiction
-from .goal import Count, Goal, complete_goal, goal_of_picture
+from .goal import Count, Goal, ResolveGoal, complete_goal, goal_of_picture
 from .parse import parse_goal
 from .parsed import ParsedRelation
 from .resolve import resolve_goal, resolve_name
@@ -13,6 +13,7 @@ __all__ = [
     "Goal",
     "Kind",
     "ParsedRelation",
+    "ResolveGoal",
     "Words",
     "check_contradictions",
     "complete_goal",

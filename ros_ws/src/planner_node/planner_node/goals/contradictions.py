@@ -3,24 +3,27 @@
 
 The rules are sound: what they refuse, no arrangement of blocks fulfils, whatever the scene. They
 are not complete; what they let pass and is impossible all the same, the search proves unreachable.
-They know ``up``, ``above``, ``left``, ``beside`` and their negations; of other predicates they say
-nothing.
+They know ``up``, ``above``, ``left``, ``front``, ``beside`` and their negations; of other
+predicates they say nothing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Final
 
 from scene_graph import (
     ABOVE,
     BESIDE,
+    FRONT,
     LEFT,
     NOT,
+    ONE_ROW,
     PREDICATES,
     UP,
     Relation,
+    Rows,
     base_index,
     base_name,
 )
@@ -28,20 +31,20 @@ from scene_graph import (
 from ..errors import ContradictoryGoalError
 from .goal import Count, Goal
 
-_KNOWN: Final = (UP, ABOVE, LEFT, BESIDE)
+_KNOWN: Final = (UP, ABOVE, LEFT, BESIDE, FRONT)
 
 
 def check_contradictions(goal: Goal, stack_count: int) -> None:
     """Raises ContradictoryGoalError with a smallest set of relations that exclude one another."""
-    relations = list(goal.relations)
-    if find_contradiction(relations, stack_count) is not None:
-        relations = _fewest(relations, lambda some: find_contradiction(some, stack_count))
-        problem = find_contradiction(relations, stack_count)
+    relations, find = list(goal.relations), partial(find_contradiction, rows=goal.rows)
+    if find(relations, stack_count) is not None:
+        relations = _fewest(relations, lambda some: find(some, stack_count))
+        problem = find(relations, stack_count)
         assert problem is not None
         raise ContradictoryGoalError([item.words for item in relations], problem)
     for count in goal.counts:
-        if _uncountable(count, relations, stack_count):
-            problem_of = partial(_uncountable, count, stack_count=stack_count)
+        if _uncountable(count, relations, stack_count, goal.rows):
+            problem_of = partial(_uncountable, count, stack_count=stack_count, rows=goal.rows)
             relations = _fewest(relations, problem_of)
             problem = problem_of(relations)
             assert problem is not None
@@ -60,12 +63,14 @@ def _fewest(
     return left
 
 
-def _uncountable(count: Count, relations: Sequence[Relation], stack_count: int) -> str | None:
+def _uncountable(
+    count: Count, relations: Sequence[Relation], stack_count: int, rows: Rows
+) -> str | None:
     """Why too few of a count's relations go with the others, each by itself."""
     fitting = [
         item
         for item in count.relations
-        if find_contradiction([*relations, item], stack_count) is None
+        if find_contradiction([*relations, item], stack_count, rows) is None
     ]
     if len(fitting) >= count.least:
         return None
@@ -78,11 +83,17 @@ def _number_that_could_hold(fitting: Sequence[Relation]) -> str:
     return f"only {', '.join(item.words for item in fitting)} can be"
 
 
-def find_contradiction(relations: Iterable[Relation], stack_count: int) -> str | None:
-    """Why no state of ``stack_count`` stacks fulfils all relations; None if no reason is found."""
+def find_contradiction(
+    relations: Iterable[Relation], stack_count: int, rows: Rows = ONE_ROW
+) -> str | None:
+    """Why no state of ``stack_count`` stacks fulfils all relations; None if no reason is found.
+
+    Args:
+        rows: how their places lie.
+    """
     relations = tuple(relations)
     for relation in relations:
-        if problem := _impossible_alone(relation, stack_count):
+        if problem := _impossible_alone(relation, stack_count, rows):
             return problem
     never = {
         (item.subject, item.predicate.removeprefix(NOT), item.object)
@@ -93,7 +104,7 @@ def find_contradiction(relations: Iterable[Relation], stack_count: int) -> str |
     return (
         _denied(relations, never)
         or _two_at_one_place(relations)
-        or _impossible_columns(relations, stack_count)
+        or _impossible_columns(relations, stack_count, rows)
         or _impossible_order(relations, never)
     )
 
@@ -105,7 +116,7 @@ def _denied(relations: Iterable[Relation], never: set[tuple[str, str, str]]) -> 
     return None
 
 
-def _impossible_alone(relation: Relation, stack_count: int) -> str | None:
+def _impossible_alone(relation: Relation, stack_count: int, rows: Rows) -> str | None:
     names = (relation.subject, relation.object)
     for name in names:
         index = base_index(name)
@@ -116,6 +127,10 @@ def _impossible_alone(relation: Relation, stack_count: int) -> str | None:
         return f"{relation.subject} is a place, it cannot be moved"
     if relation.subject == relation.object and relation.predicate in _KNOWN:
         return f"{relation.subject} cannot be {PREDICATES[relation.predicate].words} itself"
+    if relation.predicate == FRONT and rows.count == 1:
+        return (
+            f"{relation.subject} cannot be in front of {relation.object}: all places lie in one row"
+        )
     return None
 
 
@@ -168,11 +183,11 @@ def _impossible_order(
     return None
 
 
-def _impossible_columns(relations: tuple[Relation, ...], stack_count: int) -> str | None:
-    """Bounds the index of every stack; a left-of moves the bounds by one."""
+def _impossible_columns(
+    relations: tuple[Relation, ...], stack_count: int, rows: Rows
+) -> str | None:
+    """What cannot be of the stacks' places, one beside the other or one in front of the other."""
     stack_of = _stacks_of(relations)
-    low = dict.fromkeys(stack_of.values(), 0)
-    high = dict.fromkeys(stack_of.values(), stack_count - 1)
     base_of: dict[str, str] = {}
     for name, stack in stack_of.items():
         index = base_index(name)
@@ -181,20 +196,47 @@ def _impossible_columns(relations: tuple[Relation, ...], stack_count: int) -> st
         if stack in base_of:
             return f"{base_of[stack]} and {name} would have to be one stack"
         base_of[stack] = name
-        low[stack] = high[stack] = index
-    lefts = [item for item in relations if item.predicate == LEFT]
-    for item in lefts:
-        if stack_of[item.subject] == stack_of[item.object]:
-            return f"{item.subject} and {item.object} would have to be in one stack and apart"
-    for item in relations:
-        if item.predicate == BESIDE and stack_of[item.subject] == stack_of[item.object]:
-            return f"{item.subject} and {item.object} would have to be in one stack and apart"
+    for predicate in (LEFT, FRONT, BESIDE):
+        for item in relations:
+            if item.predicate == predicate and stack_of[item.subject] == stack_of[item.object]:
+                return f"{item.subject} and {item.object} would have to be in one stack and apart"
+    columns = rows.columns or tuple(range(stack_count))
+    among = "stacks" if rows.count == 1 else "columns of stacks"
+    return _impossible_axis(LEFT, among, relations, stack_of, base_of, columns) or _impossible_axis(
+        FRONT, "rows", relations, stack_of, base_of, rows.rows
+    )
+
+
+def _impossible_axis(
+    predicate: str,
+    among: str,
+    relations: tuple[Relation, ...],
+    stack_of: Mapping[str, str],
+    base_of: Mapping[str, str],
+    ranks: Sequence[int],
+) -> str | None:
+    """Bounds the rank of every stack along an axis; a left-of, or front-of, moves them by one.
+
+    Args:
+        stack_of, base_of: which stack a name is in, and the base of a stack where it is known.
+        ranks: of the places.
+    """
+    lefts = [item for item in relations if item.predicate == predicate]
+    if not lefts:
+        return None
+    words, count = PREDICATES[predicate].words, max(ranks) + 1
+    low = dict.fromkeys(stack_of.values(), 0)
+    high = dict.fromkeys(stack_of.values(), count - 1)
+    for stack, name in base_of.items():
+        index = base_index(name)
+        assert index is not None
+        low[stack] = high[stack] = ranks[index]
     order = {(stack_of[item.subject], stack_of[item.object]) for item in lefts}
     while not (more := _joined(order)) <= order:
         order |= more
     for item in lefts:
         if (stack_of[item.subject], stack_of[item.subject]) in order:
-            return f"{item.subject} would have to be left of itself"
+            return f"{item.subject} would have to be {words} itself"
     # Along the longest chain every round settles the bounds of one more stack.
     for _ in low:
         for item in lefts:
@@ -203,8 +245,8 @@ def _impossible_columns(relations: tuple[Relation, ...], stack_count: int) -> st
             high[left] = min(high[left], high[right] - 1)
             if low[right] > high[right] or low[left] > high[left]:
                 return (
-                    f"{item.subject} cannot be left of {item.object} as well: "
-                    f"there are only {stack_count} stacks"
+                    f"{item.subject} cannot be {words} {item.object} as well: "
+                    f"there are only {count} {among}"
                 )
     return None
 

@@ -8,9 +8,21 @@ relation means stands in :data:`scene_graph.PREDICATES` only.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Protocol
 
-from scene_graph import UP, Relation, Spot, Stacks, base_index, base_name, spots_of, up_relations
+from scene_graph import (
+    ONE_ROW,
+    UP,
+    Relation,
+    Rows,
+    Spot,
+    Stacks,
+    base_index,
+    base_name,
+    spots_of,
+    up_relations,
+)
 
 from ..errors import GoalImageError
 
@@ -39,10 +51,15 @@ class Count:
 
 @dataclass(frozen=True)
 class Goal:
-    """All of ``relations`` and all of ``counts`` at once."""
+    """All of ``relations`` and all of ``counts`` at once.
+
+    Attributes:
+        rows: how the places lie that the relations are read on.
+    """
 
     relations: tuple[Relation, ...]
     counts: tuple[Count, ...] = ()
+    rows: Rows = ONE_ROW
 
     def __str__(self) -> str:
         return ", ".join([*(item.words for item in self.relations), *map(str, self.counts)])
@@ -54,15 +71,19 @@ class Goal:
         mentioned = {name for item in relations for name in (item.subject, item.object)}
         return frozenset(name for name in mentioned if base_index(name) is None)
 
+    def on(self, rows: Rows) -> Goal:
+        """The same goal for places that lie so."""
+        return replace(self, rows=rows)
+
     def holds(self, stacks: Stacks) -> bool:
         """Whether a state fulfils all relations."""
-        spots = spots_of(stacks)
+        spots = spots_of(stacks, self.rows.spot)
         relations = all(item.holds(spots) for item in self.relations)
         return relations and all(item.holds(spots) for item in self.counts)
 
     def fulfilled_by(self, stacks: Stacks) -> tuple[Relation, ...]:
         """The relations that a state fulfils: all of the goal, and those that are counted."""
-        spots = spots_of(stacks)
+        spots = spots_of(stacks, self.rows.spot)
         counted = (one for item in self.counts for one in item.relations)
         found = [item for item in (*self.relations, *counted) if item.holds(spots)]
         return tuple(dict.fromkeys(found))
@@ -85,6 +106,14 @@ class Goal:
         if placed != sorted(names) or not self.holds(tuple(stacks)):
             return None
         return tuple(stacks)
+
+
+class ResolveGoal(Protocol):
+    """Finds the objects of a goal, in whatever form it was asked for, in a scene."""
+
+    def __call__(self, seen: Stacks, rows: Rows = ONE_ROW, /) -> Goal:
+        """The goal for these blocks, on places that lie so; raises PlannerError."""
+        ...
 
 
 def complete_goal(stacks: Stacks) -> Goal:

@@ -14,11 +14,13 @@ from typing import Final
 from scene_graph import (
     ABOVE,
     COLORS,
+    ONE_ROW,
     PREDICATES,
     SHAPES,
     UP,
     Phrase,
     Relation,
+    Rows,
     base_name,
 )
 
@@ -37,7 +39,7 @@ from .language import (
     meant,
 )
 from .parsed import ParsedRelation
-from .resolve_places import is_place_word, place_named, unknown_place
+from .resolve_places import check_sides, is_place_word, place_named, unknown_place
 from .said import EXAMPLE
 from .terms import Kind, Term, Words
 
@@ -54,12 +56,16 @@ _LOOKS: Final = frozenset(COLORS) | frozenset(SHAPES) | NOUNS
 
 
 def resolve_goal(
-    parsed: Sequence[ParsedRelation], names: Sequence[str], stack_count: int | None = None
+    parsed: Sequence[ParsedRelation],
+    names: Sequence[str],
+    stack_count: int | None = None,
+    rows: Rows = ONE_ROW,
 ) -> Goal:
     """Finds the objects that the names of a parsed goal mean; repeated relations count once.
 
     Args:
         stack_count: how many places the scene has; None where any may exist.
+        rows: how they lie.
 
     Raises:
         UnknownObjectError: if a name fits no object and no place of the scene.
@@ -69,6 +75,7 @@ def resolve_goal(
     relations: dict[Relation, None] = {}
     counts: dict[Count, None] = {}
     for item in parsed:
+        check_sides((item.subject, item.object), rows)
         subjects = _resolve_term(item.subject, names, stack_count)
         objects = _resolve_term(item.object, names, stack_count)
         for meaning in _meanings(item, subjects, objects):
@@ -76,7 +83,7 @@ def resolve_goal(
                 counts[meaning] = None
             else:
                 relations[meaning] = None
-    return Goal(tuple(relations), tuple(counts))
+    return Goal(tuple(relations), tuple(counts), rows)
 
 
 def _resolve_term(term: Term, names: Sequence[str], stack_count: int | None) -> tuple[str, ...]:

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import Final
 
-from scene_graph import base_index, base_name
+from scene_graph import Rows, base_index, base_name
 
-from ..errors import UnknownObjectError
-from .terms import Words
+from ..errors import InvalidGoalError, UnknownObjectError
+from .terms import Term, Words
 
 #: What people call a place, with or without a number; only ``stack0`` … are places.
 _PLACE: Final = re.compile(
@@ -46,6 +47,30 @@ def place_named(words: Words, stack_count: int | None) -> str | None:
     if stack_count is None or (side == "middle" and stack_count % 2 == 0):
         raise unknown_place(words, stack_count)
     return base_name({"left": 0, "middle": stack_count // 2, "right": stack_count - 1}[side])
+
+
+def check_sides(terms: Iterable[Term], rows: Rows) -> None:
+    """Raises InvalidGoalError for "the left stack" where there are two rows."""
+    if rows.count == 1:
+        return
+    named = [
+        words
+        for term in terms
+        for words in (term.words, *term.among, *(one.words for one in term.but))
+    ]
+    for words in named:
+        if words.side is None and words.from_right is None:
+            continue
+        known = [
+            ", ".join(base_name(place) for place, row in enumerate(rows.rows) if row == number)
+            for number in range(rows.count)
+        ]
+        raise InvalidGoalError(
+            f"it is not clear in which row; the places are {known[0]} in front and "
+            f"{' and '.join(known[1:])} behind, from the left",
+            words.offset,
+            words.text,
+        )
 
 
 def unknown_place(words: Words, stack_count: int | None) -> UnknownObjectError:

@@ -7,7 +7,7 @@ from .motion_link import MotionLink, PlanTopic
 from .plan import Plan, plan_for
 from .report import Outcome, Progress, Stage, Status
 from .scene import Scene, Sighting, scene_in
-from .scene_plan import given_plan_in, plan_in
+from .scene_plan import decided, given_plan_in, meaning, plan_in, uncover_in
 from .scene_watch import SceneWatch
 
 __all__ = [
@@ -23,8 +23,11 @@ __all__ = [
     "Sighting",
     "Stage",
     "Status",
+    "decided",
     "given_plan_in",
+    "meaning",
     "plan_for",
     "plan_in",
     "scene_in",
+    "uncover_in",
 ]

@@ -7,7 +7,7 @@ from typing import Final
 
 from tamp_runtime.motion_report import SOMETHING, ArmPlace, MotionReport, MotionState
 
-from scene_graph import Stacks, format_stacks
+from scene_graph import Stacks, format_stacks, is_hidden
 
 from .execution import STALE_SECONDS
 from .plan import Plan
@@ -70,7 +70,7 @@ def describe_difference(plan: Plan, end: MotionReport, seen: Scene) -> str:
     done = min(end.moves_done, len(plan.moves))
     complete = end.state == MotionState.SUCCEEDED
     expected = [plan.states[-1]] if complete else list(plan.states[done : done + 2])
-    if seen.stacks in expected:
+    if any(_agree(seen.stacks, stacks) for stacks in expected):
         return ""
     told = (
         "the motion node reports every move carried out"
@@ -80,6 +80,13 @@ def describe_difference(plan: Plan, end: MotionReport, seen: Scene) -> str:
     return (
         f"{told}, but the camera sees {format_stacks(seen.stacks)} where "
         f"{format_stacks(expected[0])} was predicted{_aside(seen.stacks, expected[0])}"
+    )
+
+
+def _agree(seen: Stacks, expected: Stacks) -> bool:
+    """Whether all is as expected; of what was hidden before nothing was."""
+    return len(seen) == len(expected) and all(
+        here == there or any(map(is_hidden, there)) for here, there in zip(seen, expected)
     )
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from tamp_runtime.motion_report import MotionReport
 
-from scene_graph import Stacks, format_stacks
+from scene_graph import format_stacks
 
 from ..errors import (
     CancelledError,
@@ -23,7 +23,7 @@ from ..errors import (
     PlannerError,
     TooManyReplansError,
 )
-from ..goals.goal import Goal
+from ..goals.goal import Goal, ResolveGoal
 from ..search import SearchResult
 from ..settings import EACH_MOVE, WATCH, Settings
 from .account import account_for, describe_difference, in_the_view
@@ -34,8 +34,10 @@ from .plan import Plan, plan_for
 from .plan_run import PlanRun
 from .plan_watch import PlanWatch
 from .possible_moves import PossibleMoves
+from .recall import recall
 from .report import Outcome, Progress, Stage, Status
 from .scene import Scene
+from .scene_plan import decided, meaning
 from .scene_watch import SceneWatch
 from .teller import Teller
 
@@ -88,7 +90,7 @@ class ClosedLoop:
         self._requested = scenes.now()
         self.outcome = Outcome()
 
-    def run(self, read: Callable[[], Callable[[Stacks], Goal]], given: str = "") -> Outcome:
+    def run(self, read: Callable[[], ResolveGoal], given: str = "") -> Outcome:
         """Works until the goal is confirmed or cannot be reached; every end is an outcome.
 
         Args:
@@ -121,13 +123,13 @@ class ClosedLoop:
         self._note(status=status, message=message, module=module)
         return self.outcome
 
-    def _achieve(self, read: Callable[[], Callable[[Stacks], Goal]]) -> tuple[Status, str]:
+    def _achieve(self, read: Callable[[], ResolveGoal]) -> tuple[Status, str]:
         self._tell(Stage.PERCEIVING, "reading the goal")
         with self._timed("perceive_seconds"):
             resolve = read()
         scene = self._look(Stage.PERCEIVING, "waiting for a confident scene graph")
-        goal = resolve(scene.stacks)
         self._note(initial=scene)
+        scene, goal = self._uncovered(scene, resolve)
         plans = 0
         while not goal.holds(scene.stacks):
             if plans and not self._possible.just_refused:
@@ -143,11 +145,13 @@ class ClosedLoop:
                 scene = self._look(Stage.PERCEIVING, "looking again", goal.names)
                 continue
             if not plans:
-                self._note(moves_planned=len(found.moves))
+                self._note(moves_planned=self.outcome.moves_planned + len(found.moves))
             plans += 1
             scene = self._work_off(scene, goal, found)
+            if scene.hidden:
+                scene, goal = self._uncovered(scene, resolve)
         seen = format_stacks(scene.stacks)
-        if not plans:
+        if not plans and not self.outcome.moves_planned:
             return Status.ALREADY_TRUE, f"nothing to do: '{goal}' holds in {seen}"
         told = "".join(f"; {sentence}" for sentence in dict.fromkeys(self._remarks))
         return Status.SUCCESS, f"the camera confirms '{goal}': {seen}{told}"
@@ -159,6 +163,33 @@ class ClosedLoop:
         self._check()
         if suggestion:
             error.args = (f"{error}; what would help: {suggestion}",)
+
+    def _uncovered(self, scene: Scene, resolve: ResolveGoal) -> tuple[Scene, Goal]:
+        """The scene once all that matters to the goal is seen, and the goal in it (5.4.3).
+
+        Blocks that hide others are moved aside first.
+        """
+        attempts = 0
+        while scene.hidden:
+            goal = meaning(resolve, scene)
+            if goal is not None and decided(goal, scene) and goal.holds(scene.stacks):
+                return scene, goal
+            if attempts and not self._possible.just_refused:
+                self._count_replan(scene)
+            self._tell(
+                Stage.PLANNING, f"searching what to move aside in {format_stacks(scene.stacks)}"
+            )
+            with self._timed("plan_seconds"):
+                found = self._possible.uncover(scene, goal)
+            self._tell(Stage.PLANNING, found.note)
+            if not attempts:
+                moves = "1 move was" if len(found.moves) == 1 else f"{len(found.moves)} moves were"
+                self._remarks.append(f"{moves} made to see what stands behind others")
+                self._note(moves_planned=self.outcome.moves_planned + len(found.moves))
+            attempts += 1
+            plan = plan_for(scene, goal or Goal(()), found, self._scenes.now())
+            scene = self._carry_out(plan, plan.goal)
+        return scene, resolve(scene.stacks, scene.rows)
 
     def _work_off(self, scene: Scene, goal: Goal, found: SearchResult) -> Scene:
         """Has what was found carried out, all at once or with a look after each move."""
@@ -190,7 +221,13 @@ class ClosedLoop:
         reason = "; ".join(self.outcome.causes[before:])
         try:
             message = reason or "looking whether the goal is reached"
-            scene = self._look(Stage.CONFIRMING, message, goal.names, moved=True)
+            scene = self._look(
+                Stage.CONFIRMING,
+                message,
+                goal.names,
+                moved=True,
+                recall=lambda seen: recall(seen, plan, end.report),
+            )
         except _UNSEEN as error:
             if failure is None:
                 raise
@@ -219,8 +256,12 @@ class ClosedLoop:
         message: str,
         needed: frozenset[str] = frozenset(),
         moved: bool = False,
+        recall: Callable[[Scene], Scene] = lambda scene: scene,
     ) -> Scene:
-        """The scene after the request and the last motion, with the ``needed`` objects in it."""
+        """The scene after the request and the last motion, with the ``needed`` objects in it.
+
+        Blocks that others hide are put in by ``recall``.
+        """
         self._tell(stage, message)
         with self._timed("perceive_seconds"):
             self._arm.settle(moved)
@@ -229,7 +270,7 @@ class ClosedLoop:
                 self._tell(stage, message)
             after = max(self._requested, self._motion.last_end)
             try:
-                scene = self._scenes.wait(self._stopped, after, needed)
+                scene = self._scenes.wait(self._stopped, after, needed, recall)
             except CancelledError:
                 self._check()
                 raise

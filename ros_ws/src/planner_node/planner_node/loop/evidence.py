@@ -14,7 +14,14 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-from scene_graph import GraphStatus, Place, SceneGraph, SceneObject
+from scene_graph import (
+    GraphStatus,
+    Place,
+    SceneGraph,
+    SceneObject,
+    hidden_place,
+    is_hidden,
+)
 
 from .expectation import RESTING_TOLERANCE, Expectation, Point, Rest
 from .likeness import by_name
@@ -115,19 +122,27 @@ class Evidence:
         if not graph.objects:
             return ()
         self._fresh.clear()
+        # What is hidden there may be any block, and is none that is new.
+        hidden = {hidden_place(item.name) for item in graph.objects}
         states = [self.expectation.at(step) for step in steps]
-        seen = by_name(graph.objects, states)
+        seen = by_name([item for item in graph.objects if not is_hidden(item.name)], states)
         # It may be in the hand before that is heard of.
         about_to_rise = self.expectation.picked(steps[-1])
         for name in states[0]:
             rests = [state[name] for state in states]
+            if is_hidden(name):
+                continue
             if None in rests:  # in the hand, or about to be
                 self._suspicions.pop(name, None)
                 continue
             options = tuple(rest for rest in rests if rest is not None)
+            if name not in seen and any(rest.stack in hidden for rest in options):
+                continue
             self._weigh_block(name, seen.get(name), options, graph, about_to_rise, steps)
+        unknown = {hidden_place(name) for name in states[0]}
+        visible = [place for place in graph.places if place.index not in unknown]
         for name, item in seen.items():
-            if name not in states[0] and all(item.size) and _over_a_place(item, graph.places):
+            if name not in states[0] and all(item.size) and _over_a_place(item, visible):
                 frames = FOREIGN_FRAMES
                 if item.confidence >= PLAINLY and _is_on_something(item, graph):
                     # It may be one of the others by another name, unless these are all seen.

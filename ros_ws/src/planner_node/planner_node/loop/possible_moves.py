@@ -18,7 +18,7 @@ from ..search.possible import Exclusion
 from ..settings import Settings
 from .plan import Plan
 from .scene import Scene
-from .scene_plan import given_plan_in, plan_in
+from .scene_plan import given_plan_in, plan_in, uncover_in
 
 #: So many refusals in one scene; then it is given up like any other motion that fails.
 MOST: Final = 60
@@ -67,6 +67,10 @@ class PossibleMoves:
             text, self.given = self.given, ""
             return given_plan_in(scene, text, goal, self._settings)
         return plan_in(scene, goal, self._settings, self._cancelled, self._exclusions)
+
+    def uncover(self, scene: Scene, goal: Goal | None) -> SearchResult:
+        """The fewest moves that uncover what is hidden; see :func:`uncover_in`."""
+        return uncover_in(scene, goal, self._settings, self._cancelled, self._exclusions)
 
     def forget_once(self) -> bool:
         """Forgets all, once: poses that are seen anew may be possible. False: not again."""

@@ -5,7 +5,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from scene_graph import GraphStatus, SceneGraph, SceneGraphError, Stacks
+from scene_graph import (
+    GraphStatus,
+    Rows,
+    SceneGraph,
+    SceneGraphError,
+    Stacks,
+    hidden_places,
+    is_hidden,
+    rows_of,
+)
 
 from ..errors import NotConfidentError
 
@@ -37,7 +46,8 @@ class Scene:
 
     Attributes:
         graph, stamp, frame_id: as in :class:`Sighting`.
-        stacks: every object of the graph stands on one.
+        stacks: every object of the graph stands on one; what stands for hidden blocks among them,
+            see :mod:`scene_graph.hidden`.
     """
 
     graph: SceneGraph
@@ -50,11 +60,31 @@ class Scene:
         """The names of all objects, sorted."""
         return tuple(sorted(self.graph.names))
 
+    @property
+    def rows(self) -> Rows:
+        """How the places lie."""
+        return rows_of(self.graph.places)
 
-def scene_in(sighting: Sighting, min_confidence: float = 0.0) -> Scene:
-    """Raises NotConfidentError if the graph cannot be planned on; the sentence says why."""
+    @property
+    def hidden(self) -> tuple[int, ...]:
+        """The places of which it is not known what stands there, as blocks hide it."""
+        return hidden_places(self.stacks)
+
+    @property
+    def seen_stacks(self) -> Stacks:
+        """The blocks that are seen."""
+        return tuple(tuple(name for name in stack if not is_hidden(name)) for stack in self.stacks)
+
+
+def scene_in(sighting: Sighting, min_confidence: float = 0.0, may_hide: bool = False) -> Scene:
+    """Raises NotConfidentError if the graph cannot be planned on; the sentence says why.
+
+    Args:
+        may_hide: whether blocks of a row in front may hide a part of it.
+    """
     graph = sighting.graph
-    if sighting.status != GraphStatus.CONFIDENT:
+    partial = may_hide and sighting.status == GraphStatus.HIDDEN
+    if sighting.status != GraphStatus.CONFIDENT and not partial:
         raise NotConfidentError(sighting.message or f"perception reports {sighting.status.name}")
     if graph.confidence < min_confidence:
         raise NotConfidentError(

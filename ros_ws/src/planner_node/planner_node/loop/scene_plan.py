@@ -5,12 +5,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from ..goals.goal import Goal
+from scene_graph import NOT, Stacks
+
+from ..errors import AmbiguousObjectError, GoalImageError, UnknownObjectError
+from ..goals.contradictions import check_contradictions
+from ..goals.goal import Goal, ResolveGoal
 from ..search import SearchResult
+from ..search.limits import Limits
 from ..search.peers.given_plan import checked_plan
 from ..search.possible import Exclusion
 from ..search.stability import Stability, stability_of
 from ..search.stable import make_stable_plan
+from ..search.uncover import Sight, uncover
 from ..settings import IGNORE, REQUIRE, Settings
 from .scene import Scene
 
@@ -48,6 +54,52 @@ def given_plan_in(scene: Scene, text: str, goal: Goal, settings: Settings) -> Se
         GivenPlanError: it does not hold; the message names the step.
     """
     return checked_plan(text, scene.stacks, goal, stability_in(scene, settings))
+
+
+def uncover_in(
+    scene: Scene,
+    goal: Goal | None,
+    settings: Settings,
+    cancelled: Callable[[], bool],
+    exclusions: Sequence[Exclusion] = (),
+) -> SearchResult:
+    """The fewest moves after which all that is hidden can be seen; its note says why (5.4.3).
+
+    Args:
+        goal: as far as it is known what it means; of equally short ways the one is taken that
+            leaves the fewest of its relations open.
+
+    Raises:
+        PlannerError: as :func:`uncover`.
+    """
+
+    def rate(stacks: Stacks) -> float:
+        return -len(goal.fulfilled_by(stacks)) if goal else 0.0
+
+    heights = {item.name: item.size[2] for item in scene.graph.objects}
+    limits = Limits(scene.stacks, goal or Goal(()), settings.max_expansions, cancelled)
+    sight, stability = Sight(scene.graph.places, heights), stability_in(scene, settings)
+    return uncover(scene.stacks, sight, limits, exclusions, stability, rate)
+
+
+def meaning(resolve: ResolveGoal, scene: Scene) -> Goal | None:
+    """What a goal means where some blocks are hidden; None if it may be of these.
+
+    Raises:
+        PlannerError: it makes no sense, whatever is hidden.
+    """
+    try:
+        goal = resolve(scene.seen_stacks, scene.rows)
+    except (UnknownObjectError, AmbiguousObjectError, GoalImageError):
+        return None
+    check_contradictions(Goal(goal.relations, rows=goal.rows), len(scene.stacks))
+    return goal
+
+
+def decided(goal: Goal, scene: Scene) -> bool:
+    """Whether hidden blocks have no say in whether a goal holds: it is of blocks that are seen."""
+    positive = all(not item.predicate.startswith(NOT) for item in goal.relations)
+    return not goal.counts and positive and goal.names <= set(scene.names)
 
 
 def stability_in(scene: Scene, settings: Settings) -> Stability | None:

@@ -47,12 +47,18 @@ class SceneWatch:
         with self._arrived:
             return self._newest
 
-    def latest(self, after: int = 0, needed: frozenset[str] = frozenset()) -> Scene:
-        """The newest scene, if it can be planned on.
+    def latest(
+        self,
+        after: int = 0,
+        needed: frozenset[str] = frozenset(),
+        recall: Callable[[Scene], Scene] = lambda scene: scene,
+    ) -> Scene:
+        """The newest scene, if it can be planned on; blocks may hide others in it.
 
         Args:
             after: it has to be taken after this time [ns].
-            needed: objects that have to be in it.
+            needed: objects that have to be in it, unless something is hidden.
+            recall: puts in what is remembered, see :func:`.recall.recall`.
 
         Raises:
             NoSceneGraphError: none has arrived, or none any more.
@@ -67,8 +73,9 @@ class SceneWatch:
                 "perception_node running?"
             )
         self._check_time(sighting, after, self._clock.now() - heard)
-        scene = scene_in(sighting, self._settings.min_confidence)
-        if missing := sorted(needed - set(scene.names)):
+        scene = recall(scene_in(sighting, self._settings.min_confidence, may_hide=True))
+        missing = sorted(needed - set(scene.names))
+        if missing and not scene.hidden:
             raise ObjectLostError(missing, scene.names)
         return scene
 
@@ -77,6 +84,7 @@ class SceneWatch:
         cancelled: Callable[[], bool],
         after: int = 0,
         needed: frozenset[str] = frozenset(),
+        recall: Callable[[Scene], Scene] = lambda scene: scene,
     ) -> Scene:
         """Like :meth:`latest`, but waits up to ``perceive_timeout`` for such a scene.
 
@@ -90,7 +98,7 @@ class SceneWatch:
             if cancelled():
                 raise CancelledError("cancelled while waiting for a scene graph")
             try:
-                return self.latest(after, needed)
+                return self.latest(after, needed, recall)
             except (NoSceneGraphError, NotConfidentError, ObjectLostError):
                 if self._clock.now() >= deadline:
                     raise

@@ -7,7 +7,7 @@ tries all arrangements, and knows every case.
 
 from __future__ import annotations
 
-from scene_graph import Relation, Stacks
+from scene_graph import Relation, Rows, Stacks
 
 from ..goals.goal import Count, Goal
 from .goal_states import goal_states
@@ -24,19 +24,20 @@ def excluding_parts(initial: Stacks, goal: Goal, limits: Limits) -> list[Relatio
     if not goal.names <= {name for stack in initial for name in stack}:
         return None
     parts: list[Relation | Count] = [*goal.relations, *goal.counts]
-    if not _excluded(initial, parts, limits):
+    if not _excluded(initial, parts, goal.rows, limits):
         return None
     for part in tuple(parts):
         fewer = [item for item in parts if item is not part]
-        if fewer and _excluded(initial, fewer, limits):
+        if fewer and _excluded(initial, fewer, goal.rows, limits):
             parts = fewer
     return parts
 
 
-def _excluded(initial: Stacks, parts: list[Relation | Count], limits: Limits) -> bool:
+def _excluded(initial: Stacks, parts: list[Relation | Count], rows: Rows, limits: Limits) -> bool:
     goal = Goal(
         tuple(part for part in parts if isinstance(part, Relation)),
         tuple(part for part in parts if isinstance(part, Count)),
+        rows,
     )
     problem = Problem(initial, goal)
     wanted = Wanted(problem)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from scene_graph import PREDICATES, Relation, Spot, base_index
+from scene_graph import ONE_ROW, PREDICATES, Relation, Rows, Spot, base_index
 
 from ..goals.goal import Count
 
@@ -30,13 +30,21 @@ class Condition:
 class Conditions:
     """Makes conditions of relations, for the states that are encoded with the same symbols."""
 
-    def __init__(self, symbols: Mapping[str, str], stack_count: int, height: int) -> None:
+    def __init__(
+        self,
+        symbols: Mapping[str, str],
+        stack_count: int,
+        height: int,
+        rows: Rows = ONE_ROW,
+    ) -> None:
         """``height``: the most blocks that a stack can have."""
         self._symbols = symbols
         # All spots of blocks by stack and level, made once.
         self._spots = tuple(
-            tuple(Spot(stack, level) for level in range(height)) for stack in range(stack_count)
+            tuple(rows.spot(stack, level) for level in range(height))
+            for stack in range(stack_count)
         )
+        self._bases = tuple(rows.spot(stack, -1) for stack in range(stack_count))
 
     def of(self, relation: Relation) -> Condition:
         """The predicate's meaning, at the spots of its two; what is not there fulfils nothing."""
@@ -61,8 +69,10 @@ class Conditions:
     def _locate(self, name: str) -> Callable[[State], Spot] | None:
         index = base_index(name)
         if index is not None:
-            spot = Spot(index, -1)
-            return (lambda _state: spot) if index < len(self._spots) else None
+            if index >= len(self._bases):
+                return None
+            spot = self._bases[index]
+            return lambda _state: spot
         symbol = self._symbols.get(name)
         if symbol is None:
             return None

@@ -252,7 +252,8 @@ def _cost_left(problem: _Named) -> Callable[[State], int]:
     so no move lowers the bound by more than it costs.
     """
     moves = moves_left(problem)
-    conditions = Conditions(problem.symbols, len(problem.start), sum(map(len, problem.start)))
+    height = sum(map(len, problem.start))
+    conditions = Conditions(problem.symbols, len(problem.start), height, problem.goal.rows)
     asked: list[Condition] = [
         conditions.of(relation)
         for relation in dict.fromkeys(problem.goal.relations)

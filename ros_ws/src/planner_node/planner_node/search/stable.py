@@ -97,7 +97,7 @@ def make_stable_plan(
 
 def _check_goal(initial: Stacks, goal: Goal, stability: Stability, shortest: SearchResult) -> None:
     """Raises UnstableError where the goal itself asks for what cannot stand."""
-    spots = spots_of(initial)
+    spots = spots_of(initial, goal.rows.spot)
     for relation in goal.relations:
         if relation.predicate not in (UP, ABOVE) or relation.holds(spots):
             continue

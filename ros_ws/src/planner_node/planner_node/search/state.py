@@ -57,7 +57,7 @@ class Problem:
     def _conditions(self) -> tuple[Condition, ...]:
         """One a relation or count, the strictest first."""
         height = sum(map(len, self.start))
-        conditions = Conditions(self.symbols, len(self.start), height)
+        conditions = Conditions(self.symbols, len(self.start), height, self.goal.rows)
         order = sorted(self.goal.relations, key=lambda item: item.predicate != UP)
         relations = [conditions.of(item) for item in order]
         return (*relations, *map(conditions.of_count, self.goal.counts))

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_graph import ABOVE, LEFT, NOT, PREDICATES, UP, Relation, Spot, base_index, base_name
+from scene_graph import ABOVE, LEFT, NOT, PREDICATES, UP, Relation, base_index, base_name
 
 from ..goals.goal import Count
 from .state import Problem
@@ -59,6 +59,9 @@ class Wanted:
 
     def __init__(self, problem: Problem) -> None:
         self._places = len(problem.start)
+        self._spot = problem.goal.rows.spot
+        column = np.array([self._spot(place, -1).column for place in range(self._places)])
+        self._left = column[:, None] < column[None]
         self.blocks = len(problem.symbols)
         self._height = sum(map(len, problem.start))
         self.possible = True
@@ -102,7 +105,7 @@ class Wanted:
                     found.append(Relation(name, ABOVE, below))
                 elif other < self.blocks:
                     allowed = self._allowed[self._class[one], self._class[other]]
-                    if not np.tril(allowed).any():
+                    if not (allowed & ~self._left).any():
                         found.append(Relation(name, LEFT, below))
         return tuple(found)
 
@@ -186,8 +189,7 @@ class Wanted:
             self._over[subject, object_] = True
             self._on[subject, object_] |= relation.predicate == UP
         elif relation.predicate == LEFT:
-            order = np.tri(self._places, k=-1, dtype=np.bool_).T
-            beside.append((subject, object_, order))
+            beside.append((subject, object_, self._left))
         elif relation.predicate == NOT + ABOVE and max(subject, object_) < self.blocks:
             self._never_over[subject, object_] = subject != object_
         else:
@@ -210,9 +212,13 @@ class Wanted:
         size = self._height + 1
         table = np.zeros((self._places, size, self._places, size), np.bool_)
         ours, theirs = (
-            [Spot(place, level) for place in range(self._places) for level in range(self._height)]
+            [
+                self._spot(place, level)
+                for place in range(self._places)
+                for level in range(self._height)
+            ]
             if node < self.blocks
-            else [Spot(node - self.blocks, -1)]
+            else [self._spot(node - self.blocks, -1)]
             for node in (subject, object_)
         )
         for one in ours:

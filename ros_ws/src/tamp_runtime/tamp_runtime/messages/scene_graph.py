@@ -77,6 +77,9 @@ def graph_to_message(graph: SceneGraph, header: Header) -> SceneGraphMsg:
                 position=Point(**dict(zip("xyz", map(float, place.position_world)))),
                 hidden=float(place.hidden),
                 seen_to=float(place.seen_to),
+                row=place.row,
+                column=place.index if place.column is None else place.column,
+                clear=[float(height) for height in place.clear],
             )
             for place in graph.places
         ],
@@ -89,16 +92,25 @@ def graph_from_message(message: SceneGraphMsg) -> SceneGraph:
     return SceneGraph(
         objects=tuple(object_from_message(item) for item in message.objects),
         relations=relations_from_messages(message.relations),
-        places=tuple(
-            Place(
-                item.index,
-                (item.position.x, item.position.y, item.position.z),
-                item.hidden,
-                item.seen_to,
-            )
-            for item in message.bases
-        ),
+        places=_places_from_messages(message.bases),
         confidence=message.confidence,
+    )
+
+
+def _places_from_messages(messages: Sequence[BaseMsg]) -> tuple[Place, ...]:
+    """Columns are told only of several rows."""
+    several = any(item.row for item in messages)
+    return tuple(
+        Place(
+            item.index,
+            (item.position.x, item.position.y, item.position.z),
+            item.hidden,
+            item.seen_to,
+            item.row,
+            item.column if several else None,
+            tuple(item.clear),
+        )
+        for item in messages
     )
 
 
