@@ -77,7 +77,7 @@ def graph_to_message(graph: SceneGraph, header: Header) -> SceneGraphMsg:
                 position=Point(**dict(zip("xyz", map(float, place.position_world)))),
                 hidden=float(place.hidden),
                 row=place.row,
-                column=place.index if place.column is None else place.column,
+                column=place.column or 0,
                 clear=[float(height) for height in place.clear],
             )
             for place in graph.places
