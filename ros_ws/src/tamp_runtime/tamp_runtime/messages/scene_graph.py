@@ -78,7 +78,7 @@ def graph_to_message(graph: SceneGraph, header: Header) -> SceneGraphMsg:
                 hidden=float(place.hidden),
                 seen_to=float(place.seen_to),
                 row=place.row,
-                column=place.index if place.column is None else place.column,
+                column=place.column or 0,
                 clear=[float(height) for height in place.clear],
             )
             for place in graph.places
