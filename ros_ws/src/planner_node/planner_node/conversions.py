@@ -135,7 +135,7 @@ def read_goal(request: Any, interpret: Interpret) -> ResolveGoal:
     """
     has_image = request.goal_image.width > 0 or request.goal_segmentation.width > 0
     if not has_image and request.plan.strip() and not request.goal.strip():
-        return lambda seen: complete_goal(state_after(request.plan, seen))
+        return lambda seen, _rows=ONE_ROW: complete_goal(state_after(request.plan, seen))
     if not has_image:
         parsed = parse_goal(request.goal)
         return lambda seen, rows=ONE_ROW: resolve_goal(

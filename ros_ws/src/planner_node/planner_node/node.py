@@ -212,7 +212,7 @@ class PlannerNode(Node):
             response.message += f"; published as plan {plan.plan_id}"
 
     def _plan_in(self, scene: Scene, resolve: ResolveGoal, given: str) -> tuple[Goal, SearchResult]:
-        """A plan to the goal, or the one given, or where blocks hide others one that uncovers them."""
+        """A plan to the goal, one given, or where blocks hide others one that uncovers them."""
         if not scene.hidden:
             goal = resolve(scene.stacks, scene.rows)
             if given:
