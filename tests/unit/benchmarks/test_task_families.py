@@ -73,13 +73,15 @@ def test_a_task_that_was_written_down_is_the_same_task(family: Family) -> None:
 
 
 @every_family
-def test_the_goal_names_all_blocks_of_the_start_and_no_other(family: Family) -> None:
+def test_the_goal_names_blocks_of_the_start(family: Family) -> None:
+    """All of them, but where half of the goals say only what is in front of what."""
     for seed in SEEDS:
         task = draw_task(family, seed)
         names = names_of(task.layout)
         assert family.blocks[0] <= len(names) <= family.blocks[1]
         assert len(set(names)) == len(names)
-        assert {name for name in names if name in task.goal} == set(names)
+        named = {name for name in names if name in task.goal}
+        assert named == set(names) or (family.rows is not None and named)
 
 
 def test_plain_tasks_are_those_that_have_always_been_run() -> None:
