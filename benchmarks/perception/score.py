@@ -166,7 +166,8 @@ def _named(
     for item in seen.graph.objects if seen.segments is not None else ():
         assert seen.segments is not None
         inside = labels[seen.segments.label_image == item.label]
-        found[int(np.bincount(inside).argmax())] = (item.color, item.shape)
+        if len(inside):  # what lies is not among the segments
+            found[int(np.bincount(inside).argmax())] = (item.color, item.shape)
     return tuple((*block, *found.get(label, ("", ""))) for label, block in blocks.items())
 
 
