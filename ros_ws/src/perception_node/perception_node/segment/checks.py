@@ -65,7 +65,7 @@ def check_segments(
                 f"{others:.0%} of what label {segment.label} surrounds has other labels: they are "
                 f"scattered; check {segments.source}, and that camera/image_raw {same_pixels}"
             )
-        if _color_range(rgb[box][part]) > MAX_COLOR_RANGE:
+        if _color_range(rgb[box][part], depth is not None) > MAX_COLOR_RANGE:
             raise BadImageError(
                 f"the pixels of label {segment.label} have no common colour; check "
                 f"camera/image_raw, and that it {same_pixels}"
@@ -116,15 +116,17 @@ def _edge_share(rgb: NDArray[np.uint8], outline: Mask, unlabelled: Mask) -> floa
     return changes / total if total else 1.0
 
 
-def _color_range(pixels: NDArray[np.uint8]) -> float:
-    """The range of a channel's share that half of the pixels have, at best; the widest channel's.
-
-    A lid may mirror the room and look unlike the wall below it: half of the pixels are enough.
+def _color_range(pixels: NDArray[np.uint8], shaped: bool) -> float:
+    """The widest range of a channel's share that half of a block's pixels have, of shape (n, 3).
 
     Args:
-        pixels: shape (n, 3).
+        shaped: whether depth tells what is one block: then half of the pixels are enough, as a lid
+            may mirror the room and look unlike the wall below it; else it is the middle half, which
+            two blocks in one mask do not share.
     """
     values = pixels[:: max(1, len(pixels) // PIXELS)].astype(np.float64) + 1.0
     shares = np.sort(values / values.sum(axis=1, keepdims=True), axis=0)
+    if not shaped:
+        return float((shares[3 * len(shares) // 4] - shares[len(shares) // 4]).max())
     half = len(shares) // 2
     return float((shares[half:] - shares[: len(shares) - half]).min(axis=0).max())
