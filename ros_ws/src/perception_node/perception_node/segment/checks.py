@@ -20,9 +20,10 @@ MAX_OTHERS: Final = 0.4
 BEFORE: Final = 0.005
 #: Percentage of a block's pixels that may be nearer still.
 NEAREST: Final = 10
-#: Greatest range of half of a block's chromaticities (share of a channel in the sum of the three).
-#: One colour has 0.01, with grain of 20 grey levels up to 0.16 where it is dark; noise has 0.24.
-MAX_COLOR_RANGE: Final = 0.2
+#: Greatest range of most of a block's chromaticities (share of a channel in the sum of the three).
+#: One colour has 0.01, with grain of 20 grey levels up to 0.2 where it is dark; noise has 0.3.
+MAX_COLOR_RANGE: Final = 0.23
+MOST: Final = 0.6
 #: Least share of a block's edge at which the picture changes: of blocks it is nearly all, even
 #: blurred and with masks two pixels too small or too large at least 0.45.
 MIN_EDGE: Final = 0.25
@@ -65,7 +66,7 @@ def check_segments(
                 f"{others:.0%} of what label {segment.label} surrounds has other labels: they are "
                 f"scattered; check {segments.source}, and that camera/image_raw {same_pixels}"
             )
-        if _color_range(rgb[box][part], depth is not None) > MAX_COLOR_RANGE:
+        if _color_range(rgb[box][part]) > MAX_COLOR_RANGE:
             raise BadImageError(
                 f"the pixels of label {segment.label} have no common colour; check "
                 f"camera/image_raw, and that it {same_pixels}"
@@ -116,17 +117,16 @@ def _edge_share(rgb: NDArray[np.uint8], outline: Mask, unlabelled: Mask) -> floa
     return changes / total if total else 1.0
 
 
-def _color_range(pixels: NDArray[np.uint8], shaped: bool) -> float:
-    """The widest range of a channel's share that half of a block's pixels have, of shape (n, 3).
+def _color_range(pixels: NDArray[np.uint8]) -> float:
+    """The range of a channel's share that most of the pixels have, at best; the widest channel's.
+
+    A lid may mirror the room and look unlike the wall below it, and a mask be too large: most of
+    the pixels are enough, but not half of them, for a mask may hold two blocks.
 
     Args:
-        shaped: whether depth tells what is one block: then half of the pixels are enough, as a lid
-            may mirror the room and look unlike the wall below it; else it is the middle half, which
-            two blocks in one mask do not share.
+        pixels: shape (n, 3).
     """
     values = pixels[:: max(1, len(pixels) // PIXELS)].astype(np.float64) + 1.0
     shares = np.sort(values / values.sum(axis=1, keepdims=True), axis=0)
-    if not shaped:
-        return float((shares[3 * len(shares) // 4] - shares[len(shares) // 4]).max())
-    half = len(shares) // 2
-    return float((shares[half:] - shares[: len(shares) - half]).min(axis=0).max())
+    most = int(MOST * (len(shares) - 1))
+    return float((shares[most:] - shares[: len(shares) - most]).min(axis=0).max())
