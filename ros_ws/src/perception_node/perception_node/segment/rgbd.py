@@ -329,11 +329,7 @@ def _can_be_one_block(table: _Table, a: NDArray[np.int64], b: NDArray[np.int64])
     near = np.linalg.norm(table.centre[a, :2] - table.centre[b, :2], axis=1) < ONE_BODY
     near &= table.broad[a] & table.broad[b]
     just_on_top = on_top & (table.centre[lid, 2] < table.high[wall, 2] + SAME_HEIGHT)
-    as_high = (np.abs(table.low[a, 2] - table.low[b, 2]) < SAME_HEIGHT) & (
-        np.abs(table.high[a, 2] - table.high[b, 2]) < SAME_HEIGHT
-    )
-    corner = upright & as_high & ~flat
-    return np.asarray(alike | (near & (just_on_top | corner)))
+    return np.asarray(alike | (near & just_on_top))
 
 
 def _which_are_blocks(
