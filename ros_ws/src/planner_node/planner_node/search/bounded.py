@@ -36,7 +36,7 @@ WHOLE: Final = 10
 CONSTRUCTED: Final = 30
 KEPT: Final = 8
 #: Moves of plans that are looked at for each block, see :func:`shortened`.
-WORK_OF_A_BLOCK: Final = 12_000
+WORK_OF_A_BLOCK: Final = 20_000
 #: The share of it that goes to all that are kept; the rest goes to the shortest of them.
 FIRST_SHARE: Final = 0.6
 #: Patterns of a group of the split that is tried for the bound.

@@ -17,7 +17,7 @@ from .limits import Limits
 
 #: Blocks that are taken out together at most, and how far from each other they stand at the end
 #: where they are chosen from one stack.
-MOST_OUT: Final = 3
+MOST_OUT: Final = 7
 NEAR: Final = 2
 #: How often a plan goes on that is one move longer.
 WORSE: Final = 0.02
@@ -120,54 +120,55 @@ class Reinsertion:
         raise KeyError(name)
 
 
+#: The last move of a block on its cheapest way to a spot, with those before it: before which step
+#: it is, from where and to where. None: it has not moved.
+_Way = tuple["_Way | None", int, int, int]
+
+#: The moves to a spot that cannot be reached.
+_FAR: Final = 1 << 20
+
+
 def _cheapest(
-    steps: Sequence[Step], heights: list[int], start: _Spot, end: _Spot
+    steps: Sequence[Step], heights: Sequence[int], start: _Spot, end: _Spot
 ) -> list[tuple[int, int, int]] | None:
     """The fewest moves of one block among the steps of the others; None where there are none.
 
     Args:
-        heights: of the stacks at the start, without the block; changed.
+        heights: of the stacks at the start, without the block.
 
     Returns:
         Before which step each is, from where and to where.
     """
-    cost = {start: 0}
-    came_from: list[dict[int, int]] = []
+    # Of every stack, for each level: the moves that the block needs to be there, and the last of
+    # them. The last level is the top, where the block is free to go.
+    cost = [[_FAR] * (height + 1) for height in heights]
+    ways: list[list[_Way | None]] = [[None] * (height + 1) for height in heights]
+    cost[start.stack][start.level] = 0
+    stacks = range(len(heights))
     for index in range(len(steps) + 1):
-        # Where the block is on top it can go to every other stack.
-        on_top = [
-            (cost[spot], stack)
-            for stack, height in enumerate(heights)
-            if (spot := _Spot(stack, height)) in cost
-        ]
-        moved: dict[int, int] = {}
-        if on_top:
-            least, source = min(on_top)
-            for stack, height in enumerate(heights):
-                spot = _Spot(stack, height)
-                if stack != source and cost.get(spot, least + 2) > least + 1:
-                    cost[spot] = least + 1
-                    moved[stack] = source
-        came_from.append(moved)
+        tops = [levels[-1] for levels in cost]
+        least = min(tops) + 1
+        if max(tops) > least:
+            source = tops.index(least - 1)
+            for stack in stacks:
+                if tops[stack] > least:
+                    cost[stack][-1] = least
+                    ways[stack][-1] = (ways[source][-1], index, source, stack)
         if index < len(steps):
-            step = steps[index]
+            _, source, target = steps[index]
             # Who stands on the block that moves is in its way.
-            cost.pop(_Spot(step.source, heights[step.source]), None)
-            heights[step.source] -= 1
-            heights[step.target] += 1
-    if end not in cost:
+            cost[source].pop()
+            ways[source].pop()
+            cost[target].append(_FAR)
+            ways[target].append(None)
+    if cost[end.stack][end.level] >= _FAR:
         return None
-    ways = []
-    stack, level = end
-    for index in range(len(steps), -1, -1):
-        if level == heights[stack] and stack in came_from[index]:
-            source = came_from[index][stack]
-            ways.append((index, source, stack))
-            stack, level = source, heights[source]
-        if index:
-            heights[steps[index - 1].source] += 1
-            heights[steps[index - 1].target] -= 1
-    return ways[::-1]
+    moves = []
+    way = ways[end.stack][end.level]
+    while way is not None:
+        moves.append(way[1:])
+        way = way[0]
+    return moves[::-1]
 
 
 def steps_of(initial: Stacks, moves: Sequence[Move]) -> list[Step]:
