@@ -104,6 +104,9 @@ def bounded_rows(count: int) -> list[Row]:
     rows = []
     for blocks, places, required in BOUNDED:
         seconds, bounds = [], []
+        # The tables that are made once and kept have a row of their own.
+        first = make_plan(*random_problem(blocks, places, 0, complete=True), MAX_EXPANSIONS,
+                          algorithm="bounded")  # fmt: skip
         for seed in tqdm(range(FIRST_SEED, FIRST_SEED + count), desc=f"n={blocks} m={places}"):
             initial, goal = random_problem(blocks, places, seed, complete=True)
             found = make_plan(initial, goal, MAX_EXPANSIONS, algorithm="bounded")
@@ -113,6 +116,8 @@ def bounded_rows(count: int) -> list[Row]:
         rows += [
             Row(name, "time, worst", max(seconds), "s", count, (min(seconds), max(seconds)),
                 f"<= {required}"),
+            Row(name, "time of the first of all", first.seconds, "s", 1,
+                note="with the tables of patterns, which are kept"),
             Row(name, "proven bound, worst", max(bounds), "", count, (min(bounds), max(bounds)),
                 "<= 1.3"),
             Row(name, "proven bound, median", statistics.median(bounds), "", count),

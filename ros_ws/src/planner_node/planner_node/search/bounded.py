@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """A plan that is not much longer than a shortest one, with the proof of how much at most.
 
-Below: the blocks are split into parts that are small enough for shortest plans; the moves that
-every part needs by itself add up to a bound. So do those of parts that share blocks, each counted
-for as many parts as a block is in. Above: the best of many constructed plans, out of
-which blocks are taken and put back where they cost fewer moves, see
-:mod:`~planner_node.search.reinsertion`.
+Below: the blocks are split into groups that are small enough for tables of all their arrangements,
+and the moves are found that two groups need by themselves. Pairs that share no block add up; so
+does half of what three pairs need of three groups, as every block is in two of them. Above: the
+best of many constructed plans, out of which blocks are taken and put back where they cost fewer
+moves, see :mod:`~planner_node.search.reinsertion`.
 """
 
 from __future__ import annotations
 
 import random
 from collections.abc import Sequence
+from functools import cache
 from itertools import combinations
 from typing import Final
 
@@ -20,18 +21,15 @@ from scene_graph import Move, Stacks
 from ..goals.goal import complete_goal
 from .construct import constructed
 from .ends import encoded_word, start_word
-from .groups import complete_groups, group_sizes
+from .groups import Group, complete_groups, group_sizes
 from .limits import Limits, PartTooLargeError
-from .patterns import pattern_count
 from .patterns_both_ends import patterns_both_ends, states_along
-from .patterns_first import patterns_first
+from .product import ProductSpace
 from .reinsertion import shortened
 from .state import Problem, State
 
 #: A plan of this many times the proven bound is good enough.
 ENOUGH: Final = 1.05
-#: Blocks whose shortest plan is found at once.
-WHOLE: Final = 10
 #: Constructed plans each way, and those of them that are looked at further.
 CONSTRUCTED: Final = 30
 KEPT: Final = 8
@@ -39,13 +37,12 @@ KEPT: Final = 8
 WORK_OF_A_BLOCK: Final = 20_000
 #: The share of it that goes to all that are kept; the rest goes to the shortest of them.
 FIRST_SHARE: Final = 0.6
-#: Patterns of a group of the split that is tried for the bound.
-GUIDE_PATTERNS: Final = 16_000
-#: Up to so many places three groups in turn are looked at together, of so many blocks each, as long
-#: as there are no more states than that.
-FEW_PLACES: Final = 3
-CIRCLE: Final = 4
-CIRCLE_EXPANSIONS: Final = 60_000
+#: The largest table of a group, its arrangements times the moves from each; made at the first call.
+TABLE: Final = 2_000_000
+#: All pairs of so many groups are looked at, of more only neighbours.
+ALL_PAIRS: Final = 6
+#: States that are looked at of a pair of groups before what is proven by then is its bound.
+PART_EXPANSIONS: Final = 60_000
 
 
 def bounded(problem: Problem, limits: Limits) -> list[State]:
@@ -55,9 +52,12 @@ def bounded(problem: Problem, limits: Limits) -> list[State]:
     """
     names = [name for stack in problem.initial for name in stack]
     target = problem.goal.state(names, len(problem.initial))
-    if target is None or len(problem.start) <= 2 or len(names) <= WHOLE:
+    if target is None or problem.target is None or len(problem.start) <= 2:
         return patterns_both_ends(problem, limits)
-    least = _least(problem, target, limits)
+    groups = _groups(problem, problem.target)
+    if len(groups) <= 2:
+        return patterns_both_ends(problem, limits)
+    least = _least(problem, target, groups, limits)
     limits.prove_at_least(least)
     work = WORK_OF_A_BLOCK * len(names)
 
@@ -83,62 +83,68 @@ def _constructed(initial: Stacks, target: Stacks, limits: Limits) -> list[list[M
     return sorted(plans, key=len)[:KEPT]
 
 
-def _least(problem: Problem, target: Stacks, limits: Limits) -> int:
-    """Moves that every plan has: those that parts of the blocks need by themselves.
+def _least(problem: Problem, target: Stacks, groups: Sequence[Group], limits: Limits) -> int:
+    """Moves that every plan has: those that pairs of groups need by themselves.
 
-    Parts that share no block add up. Where every block is in three parts of a circle, their sum
-    counts every move three times.
+    Parts that share no block add up, and so does half of what parts need of which each block is in
+    two.
     """
-    places = len(problem.start)
-    assert problem.target is not None
-    start, goal = start_word(problem), encoded_word(problem, problem.target)
     names = list(problem.symbols)
 
-    def solved(blocks: Sequence[int], expansions: int | None = None) -> int:
+    def solved(blocks: Sequence[int]) -> int:
         part = {names[block] for block in blocks}
         initial, wanted = _only(problem.initial, part), _only(target, part)
         if initial == wanted:
             return 0
-        within = limits.of_a_part(expansions)
+        within = limits.of_a_part(PART_EXPANSIONS)
         try:
-            return len(patterns_first(Problem(initial, complete_goal(wanted)), within)) - 1
+            return len(patterns_both_ends(Problem(initial, complete_goal(wanted)), within)) - 1
         except PartTooLargeError:
             return within.at_least or 0
 
-    groups, _ = complete_groups(
-        start, goal, places, group_sizes(places, len(names), GUIDE_PATTERNS)
-    )
-    alone = [solved(group.named) for group in groups]
-    gains = {}
-    for one, other in combinations(range(len(groups)), 2):
-        pair = (*groups[one].named, *groups[other].named)
-        if len(pair) <= WHOLE:
-            gains[one, other] = solved(pair) - alone[one] - alone[other]
-    least = sum(alone) + _best_matching(gains, frozenset(range(len(groups))))
-    if places > FEW_PLACES:
-        return least
-    sizes = group_sizes(places, len(names), pattern_count(places, CIRCLE, 0))
-    if len(sizes) < 4:
-        return least
-    circle = [group.named for group in complete_groups(start, goal, places, sizes)[0]]
-    total = sum(
-        solved([*circle[index - 2], *circle[index - 1], *circle[index]], CIRCLE_EXPANSIONS)
-        for index in range(len(circle))
-    )
-    return max(least, -(-total // 3))
+    count = len(groups)
+    near = count if count <= ALL_PAIRS else 1
+    pairs = {
+        (one, other): solved([*groups[one].named, *groups[other].named])
+        for one, other in combinations(range(count), 2)
+        if other - one <= near or other - one >= count - near
+    }
+    return -(-_twice(pairs, frozenset(range(count))) // 2)
 
 
-def _best_matching(gains: dict[tuple[int, int], int], left: frozenset[int]) -> int:
-    """The largest sum of gains of pairs of which no two share a group."""
-    if not left:
-        return 0
-    one = min(left)
-    best = _best_matching(gains, left - {one})
-    for other in left - {one}:
-        if (one, other) in gains:
-            rest = _best_matching(gains, left - {one, other})
-            best = max(best, gains[one, other] + rest)
-    return best
+def _twice(pairs: dict[tuple[int, int], int], left: frozenset[int]) -> int:
+    """Twice the most that pairs add up to: each once, or three that share their groups by half."""
+
+    @cache
+    def most(left: frozenset[int]) -> int:
+        if len(left) < 2:
+            return 0
+        one, *others = sorted(left)
+        best = most(left - {one})
+        for other in others:
+            if (one, other) in pairs:
+                best = max(best, 2 * pairs[one, other] + most(left - {one, other}))
+        for second, third in combinations(others, 2):
+            three = [(one, second), (one, third), (second, third)]
+            if all(pair in pairs for pair in three):
+                rest = most(left - {one, second, third})
+                best = max(best, sum(pairs[pair] for pair in three) + rest)
+        return best
+
+    return most(left)
+
+
+def _groups(problem: Problem, target: State) -> Sequence[Group]:
+    """The fewest groups whose pairs can be searched by their patterns."""
+    places, blocks = len(problem.start), len(problem.symbols)
+    largest = TABLE // places**2
+    while True:
+        sizes = group_sizes(places, blocks, largest)
+        pair = [Group(tuple(range(size))) for size in sizes[:2]]
+        if ProductSpace.fits(places, pair):
+            words = start_word(problem), encoded_word(problem, target)
+            return complete_groups(*words, places, sizes)[0]
+        largest //= 2
 
 
 def _only(stacks: Stacks, names: set[str]) -> Stacks:

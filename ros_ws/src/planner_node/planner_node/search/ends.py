@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from .patterns import Distances
 from .product import LIKE, ProductSpace
 from .state import ANY, Problem, State
 from .wanted import Wanted
+
+#: Bounds of so many groups are good ones, however small the groups.
+FEW_GROUPS: Final = 2
 
 
 def start_word(problem: Problem) -> Words:
@@ -84,12 +88,11 @@ def prepare(problem: Problem, wanted: Wanted, limits: Limits) -> Ends | None:
 
 
 def _complete(start: Words, goal: Words, places: int, blocks: int) -> tuple[Group, ...]:
-    """The best split for one goal state, with larger patterns where small ones do not fit."""
+    """The best split for one goal state, with larger patterns where small ones are many."""
     sizes = group_sizes(places, blocks)
-    trial = tuple(Group(tuple(range(size))) for size in sizes)
-    if not ProductSpace.fits(places, trial):
+    if len(sizes) > FEW_GROUPS:
         sizes = group_sizes(places, blocks, MAX_PATTERNS)
-        trial = tuple(Group(tuple(range(size))) for size in sizes)
+    trial = tuple(Group(tuple(range(size))) for size in sizes)
     if not ProductSpace.fits(places, trial):
         return ()
     return complete_groups(start, goal, places, sizes)[0]
