@@ -42,7 +42,7 @@ def test_the_bound_is_true(monkeypatch: pytest.MonkeyPatch, table: int, seed: in
     monkeypatch.setattr(bounded, "TABLE", table)  # groups of 1, 2 and 4
     initial, target = problem(11, 3, seed)
     goal = complete_goal(target)
-    shortest = make_plan(initial, goal)
+    shortest = make_plan(initial, goal, algorithm="patterns")
     assert shortest.bound == 1.0
     limits = Limits(initial, goal)
     found = len(bounded.bounded(Problem(initial, goal), limits)) - 1

@@ -192,6 +192,7 @@ class PlannerNode(Node):
             goal, found = self._plan_in(scene, resolve, request.plan.strip())
         plan = plan_for(scene, goal, found, self._scenes.now())
         response.expanded, response.planning_seconds = found.expanded, found.seconds
+        response.bound = found.bound
         response.plan, response.states = plan_to_message(plan), predicted_to_messages(plan)
         if not plan.moves:
             response.status = int(Status.ALREADY_TRUE)

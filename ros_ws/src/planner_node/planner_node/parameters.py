@@ -70,7 +70,8 @@ PARAMETERS: Final = (
         "search_algorithm",
         _DEFAULTS.search_algorithm,
         f"How plans are searched for: {', '.join(ALGORITHMS)}; "
-        "all give shortest plans but bounded, which is for many blocks; or up:ENGINE, such as "
+        "all give shortest plans but bounded, which is for many blocks and which auto takes where "
+        "a shortest plan takes too long; or up:ENGINE, such as "
         "up:fast-downward-opt, an engine of Unified Planning where that is installed (make peers), "
         "which has 60 s and does not count expansions.",
         check=_algorithm_problem,

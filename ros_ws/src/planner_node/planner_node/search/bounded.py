@@ -54,9 +54,11 @@ def bounded(problem: Problem, limits: Limits) -> list[State]:
     target = problem.goal.state(names, len(problem.initial))
     if target is None or problem.target is None or len(problem.start) <= 2:
         return patterns_both_ends(problem, limits)
-    groups = _groups(problem, problem.target)
-    if len(groups) <= 2:
+    sizes = _sizes(len(problem.start), len(names))
+    if len(sizes) <= 2:
         return patterns_both_ends(problem, limits)
+    words = start_word(problem), encoded_word(problem, problem.target)
+    groups, _ = complete_groups(*words, len(problem.start), sizes)
     least = _least(problem, target, groups, limits)
     limits.prove_at_least(least)
     work = WORK_OF_A_BLOCK * len(names)
@@ -134,16 +136,14 @@ def _twice(pairs: dict[tuple[int, int], int], left: frozenset[int]) -> int:
     return most(left)
 
 
-def _groups(problem: Problem, target: State) -> Sequence[Group]:
-    """The fewest groups whose pairs can be searched by their patterns."""
-    places, blocks = len(problem.start), len(problem.symbols)
+def _sizes(places: int, blocks: int) -> list[int]:
+    """Sizes of the fewest groups whose pairs can be searched by their patterns."""
     largest = TABLE // places**2
     while True:
         sizes = group_sizes(places, blocks, largest)
         pair = [Group(tuple(range(size))) for size in sizes[:2]]
         if ProductSpace.fits(places, pair):
-            words = start_word(problem), encoded_word(problem, target)
-            return complete_groups(*words, places, sizes)[0]
+            return sizes
         largest //= 2
 
 

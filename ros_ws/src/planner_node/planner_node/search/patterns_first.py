@@ -15,12 +15,12 @@ from typing import Final
 
 import numpy as np
 
+from .bounded import bounded
 from .ends import encoded_word, start_word
 from .groups import complete_groups, largest_first
 from .limits import Limits, PartTooLargeError
 from .packed import word_of
 from .patterns import pattern_space
-from .patterns_both_ends import patterns_both_ends
 from .state import Parents, Problem, State, path_to
 
 #: What is looked at state by state, some milliseconds, before layers of arrays are the quicker way.
@@ -28,16 +28,17 @@ MOST_EXPANSIONS: Final = 1500
 
 
 def patterns_first(problem: Problem, limits: Limits) -> list[State]:
-    """A shortest path: that of :func:`patterns_a_star`, or else of :func:`patterns_both_ends`.
+    """A shortest path: that of :func:`patterns_a_star`, or else of :func:`bounded`.
 
-    A goal that is not complete, or fewer than three places, get the second at once.
+    A goal that is not complete, or fewer than three places, get the second at once; it is shortest
+    but for complete goals of so many blocks that no search would end.
     """
     if problem.target is None or len(problem.start) <= 2:
-        return patterns_both_ends(problem, limits)
+        return bounded(problem, limits)
     try:
         return patterns_a_star(problem, limits.of_a_part(MOST_EXPANSIONS))
     except PartTooLargeError:
-        return patterns_both_ends(problem, limits)
+        return bounded(problem, limits)
 
 
 def patterns_a_star(problem: Problem, limits: Limits) -> list[State]:

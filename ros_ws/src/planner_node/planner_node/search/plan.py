@@ -32,7 +32,7 @@ class SearchResult:
         bound: how many times as long as a shortest plan it is at most, proven; 1.0: it is shortest,
             or shortest of those that put nothing where it is unstable.
         unstable: what it puts where it is unstable, as far as that was asked for.
-        note: a sentence on that for people; empty where there is nothing to be said.
+        note: a sentence on these for people; empty where there is nothing to be said.
     """
 
     moves: tuple[Move, ...]
@@ -109,7 +109,10 @@ def search(
     for move in moves:
         states.append(apply_move(states[-1], move))
     bound = len(moves) / limits.at_least if moves and limits.at_least else 1.0
-    return SearchResult(moves, tuple(states), limits.expanded, limits.seconds(), bound)
+    note = ""
+    if bound > 1.0:
+        note = f"{bound:.2f} times as long as the proven least, {limits.at_least} moves"
+    return SearchResult(moves, tuple(states), limits.expanded, limits.seconds(), bound, note=note)
 
 
 def _move_between(before: State, after: State) -> Move:
