@@ -13,6 +13,7 @@ from tamp_runtime.motion_report import MotionReport
 from motion_node.execution.condition import Condition
 from motion_node.execution.executive import Executive
 from motion_node.execution.follow import Follower
+from motion_node.execution.last_look import Sightings
 from motion_node.execution.plan import Plan
 from motion_node.execution.settings import ExecutionSettings
 
@@ -32,6 +33,7 @@ class Bench:
         self.condition = Condition(
             self.arm, lambda: self.follower.grip, HOME_Q, OPEN, lambda q: np.array([*q, 0.5])
         )
+        self.sightings = Sightings()
         self.executive = Executive(
             lambda: next(self.planners),
             self.arm,
@@ -41,6 +43,7 @@ class Bench:
             lambda: self.conflict,
             suggest=lambda *_: self.suggestion,
             in_the_way=lambda _plan, _motion, at: self.in_the_way(at),
+            sightings=self.sightings,
         )
 
     def carry_out(self, plan: Plan = PLAN) -> MotionReport:

@@ -14,7 +14,7 @@ from posed_scenes import FRAME, SECOND, Instant, Point, centre, frame, instants,
 from tamp_runtime.motion_report import MotionReport, MotionState
 
 from planner_node.loop import Plan, Sighting
-from planner_node.loop.plan_watch import PlanWatch
+from planner_node.loop.plan_watch import PlanSight, PlanWatch, Sight
 from scene_graph import GraphStatus, Move, Stacks, all_moves
 
 NAMES = ("red_box", "green_box", "blue_box", "yellow_box", "cyan_box")
@@ -55,6 +55,58 @@ def test_frames_as_predicted_never_contradict_at_whatever_phase(plan: Plan, late
     watch = PlanWatch(plan)
     watch_all(watch, plan, late * FRAME)
     assert watch.contradiction == ""
+
+
+@given(plans(), st.integers(0, 3))
+def test_of_every_frame_it_is_told_whether_the_next_block_is_where_it_is_to_be_taken(
+    plan: Plan, late: int
+) -> None:
+    watch, begun = PlanWatch(plan), 0
+    reports: list[MotionReport] = []
+    for instant in instants(plan):
+        if instant.begins:
+            reports.append(instant.report(plan, late * FRAME))
+        while reports and reports[0].stamp <= instant.stamp:
+            watch.hear(reports.pop(0))
+            begun = instant.stamp
+        watch.see(instant.frame())
+        # Just after a step has begun the block may still be in the hand.
+        settled = not reports and instant.stamp > begun + 3 * FRAME
+        if settled and not instant.step % 2 and instant.step < 2 * len(plan.moves):
+            assert watch.sight == PlanSight(instant.stamp, instant.step // 2, Sight.SEEN)
+
+
+@given(plans(), st.floats(0.016, 0.1), st.floats(0.0, math.tau), st.floats(0.0, 1.0))
+def test_a_block_that_is_not_where_it_is_to_be_taken_is_never_said_to_be(
+    plan: Plan, away: float, angle: float, visible: float
+) -> None:
+    watch, name = PlanWatch(plan, patience=99), plan.blocks[0]
+    for instant in instants(plan):
+        if instant.step:
+            break
+        if instant.begins:
+            watch.hear(instant.report(plan))
+        x, y, z = standing(instant, name)
+        there = (x + away * math.cos(angle), y + away * math.sin(angle), z)
+        assert not watch.see(instant.frame({name: there}, visible=visible))
+        assert watch.sight is not None and watch.sight.sight is not Sight.SEEN
+
+
+def test_what_nothing_can_be_made_of_and_what_may_contradict_the_plan_is_doubtful() -> None:
+    _, watch, course = course_of(2)
+    assert watch_sees(watch, course[0].frame()) is Sight.SEEN
+    nothing = {name: None for name in NAMES}
+    assert watch_sees(watch, course[1].frame(nothing)) is Sight.DOUBTFUL
+    x, y, z = centre(1, 0)
+    assert watch_sees(watch, course[2].frame({"green_box": (x + 0.018, y, z)})) is Sight.DOUBTFUL
+    hidden: dict[str, Any] = {"moved": {"red_box": None}, "hidden": (1.0, 1.0, 1.0)}
+    assert watch_sees(watch, course[3].frame(**hidden)) is Sight.HIDDEN
+    assert watch_sees(watch, course[4].frame()) is Sight.SEEN
+
+
+def watch_sees(watch: PlanWatch, seen: Sighting) -> Sight | None:
+    assert not watch.see(seen)
+    return watch.sight.sight if watch.sight else None
 
 
 @given(plans(), st.integers(0, 3), st.floats(0.0, 0.0105), st.floats(0.0, math.tau))

@@ -122,6 +122,10 @@ def test_a_task_that_nobody_disturbs_is_not_stopped(verify: str) -> None:
     assert (outcome.moves_planned, outcome.moves_executed) == (3, 3)
     assert bench.stacks == REACHED
     assert bench.stops == []
+    assert all(plan.watched == (verify == "watch") for plan in bench.plans)
+    told = {(plan_id, sight.move) for plan_id, sight in bench.sights}
+    assert told == ({(bench.plans[0].plan_id, move) for move in range(3)} if told else set())
+    assert bool(told) == (verify == "watch")
 
 
 def test_blocks_that_change_places_stop_the_motion_and_are_planned_for_anew() -> None:

@@ -88,6 +88,8 @@ class PlannerNode(Node):
         symbolic_plan (tamp_interfaces/SymbolicPlan, latched): the plan to carry out; without moves:
             the plan to stop, or the way home. A plan that is not taken up by a motion node that
             reports to be idle is published again, under the same name.
+        plan_sighting (tamp_interfaces/PlanSighting): what is seen of a plan that is watched, before
+            the motion node takes a block.
         diagnostics (diagnostic_msgs/DiagnosticArray): that it lives.
 
     Services:

@@ -24,6 +24,8 @@ from .arm_state import ArmState, ArmStates
 from .condition import REST_SECONDS, Condition
 from .errors import ClosedError, ExecutionError, findings
 from .follow import Follower
+from .last_look import LastLook, Sightings
+from .motion_run import MotionRun
 from .plan import Plan, Planner
 from .recovery import Recovered, Recovery
 from .settings import ExecutionSettings
@@ -49,6 +51,7 @@ class Executive:
         suggest: what would help a plan that was refused, in words; empty: nobody knows.
         in_the_way: what has come into the rest of a motion's way, given the plan and the motion's
             time; empty: nothing.
+        sightings: what is seen of plans that are watched.
     """
 
     def __init__(
@@ -62,7 +65,9 @@ class Executive:
         check: Callable[[Plan], None] = lambda _plan: None,
         suggest: Suggest = lambda _plan, _state, _error, _stopped: "",
         in_the_way: Callable[[Plan, Motion, float], str] = lambda _plan, _motion, _time: "",
+        sightings: Sightings | None = None,
     ) -> None:
+        self._sightings = sightings or Sightings()
         self._suggest, self._in_the_way = suggest, in_the_way
         self._planner, self._arm, self._settings, self._check = planner, arm, settings, check
         self._follower, self._condition, self._conflict = follower, condition, conflict
@@ -172,19 +177,18 @@ class Executive:
 
     def _run(self, plan: Plan, motion: Motion, planner: Planner, stop: threading.Event) -> None:
         follower = self._follower
+        look = LastLook(self._sightings, plan.plan_id) if plan.watched else None
 
-        def on_progress(trajectory: Trajectory, at: float) -> None:
-            self._tell_progress(trajectory, at)
+        def on_progress(motion: Motion, at: float) -> None:
+            self._tell_progress(motion.trajectory, at)
             if found := self._in_the_way(plan, motion, at):
                 sentence = f"{found}; the arm was stopped"
                 raise ExecutionError(MotionReason.OBSTRUCTED, sentence, recoverable=True)
 
         try:
-            arrived = follower.follow(
-                motion.trajectory,
-                on_progress,
-                lambda: stop.is_set() and follower.empty_handed,
-            )
+            arrived = MotionRun(
+                follower, self._arm, look, on_progress, self._tell_standing, stop.is_set
+            ).run(motion)
         except ExecutionError as error:
             if not error.recoverable:
                 raise
@@ -304,6 +308,9 @@ class Executive:
             self._before = self._report.message
         message = f"{self._before}; {sentence}" if sentence else self._before
         self._tell(self._report.state, message)
+
+    def _tell_standing(self, sentence: str) -> None:
+        self._tell(MotionState.EXECUTING, sentence)
 
     def _tell_progress(self, trajectory: Trajectory, at: float) -> None:
         phase = trajectory.interval_at(at).phase

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Final
 
@@ -26,6 +26,8 @@ from .settings import ExecutionSettings
 _FRESH_SECONDS: Final = 1.0
 #: Fingers that were told to close and have not moved by then are held apart [s].
 FEEL_SECONDS: Final = 3.0
+#: The least that is left of a trajectory that ends before a grasp [s].
+_SHORTEST_SECONDS: Final = 0.01
 #: What an arm does that has not been given a trajectory.
 _NOTHING: Final = Phase(HOME, 0, "", None, None, Tool(0.0, 0.0, 0.0), (), 0.0)
 
@@ -265,6 +267,49 @@ class Follower:
                 )
             state = patience.wait(state)
         return state
+
+    def stand_before(self, grasp: Interval) -> None:
+        """Goes on to where the fingers are to close, and stands there; they are open.
+
+        Args:
+            grasp: of the running trajectory, while they close or before.
+
+        Raises:
+            ExecutionError: if the arm does not come there, or joint states stay out.
+        """
+        assert self._trajectory is not None
+        if self.interval.gripping:
+            self.brake()  # which opens them again
+            return
+        begin = min(self.time + self.LEAD, grasp.start - _SHORTEST_SECONDS)
+        way = self._trajectory.cut(begin, grasp.start)
+        self._trajectory, self.under_way, self.time = way, False, 0.0
+        self._send(way, None)
+        patience = self._patience()
+        first = state = patience.wait(self._arm.newest())
+        while (
+            state.stamp - first.stamp < way.duration
+            or state.positions.furthest(way.positions[-1])[0] > self.settings.monitor.goal_tolerance
+        ):
+            if state.stamp - first.stamp > way.duration + 5.0:
+                raise ExecutionError(
+                    MotionReason.TRACKING_LOST,
+                    "the arm does not come to where it is to take the next block",
+                    recoverable=True,
+                )
+            state = patience.wait(state)
+
+    def states(self) -> Iterator[ArmState]:
+        """The newest state, and then each that comes.
+
+        Raises:
+            ExecutionError: if joint states stay out.
+        """
+        patience, state = self._patience(), self._arm.newest()
+        while True:
+            if state is not None:
+                yield state
+            state = patience.wait(state)
 
     def feel(self, state: ArmState, by: float = 0.006) -> bool:
         """Whether something resists when the fingers close a little more; then it presses on.

@@ -109,6 +109,17 @@ class Evidence:
         self._patience = patience
         self._suspicions: dict[str, Suspicion] = {}
         self._fresh: set[str] = set()  # of the newest frame
+        self._in_place: set[str] = set()  # likewise
+
+    @property
+    def doubts(self) -> bool:
+        """Whether anything in the newest frame speaks against the plan, though not for certain."""
+        return any(self._suspicions[name].finding.frames < FOREIGN_FRAMES
+                   for name in self._fresh if name in self._suspicions)  # fmt: skip
+
+    def is_in_place(self, name: str) -> bool:
+        """Whether a block is seen in the newest frame where it is to rest."""
+        return name in self._in_place
 
     def weigh(self, sighting: Sighting, steps: range) -> tuple[Suspicion, ...]:
         """Takes a frame; returns what is certain by now, and what else more than one frame says.
@@ -119,9 +130,10 @@ class Evidence:
             steps: those of the plan that may have been under way, at least one.
         """
         graph = sighting.graph
+        self._fresh.clear()
+        self._in_place.clear()
         if not graph.objects:
             return ()
-        self._fresh.clear()
         # What is hidden there may be any block, and is none that is new.
         hidden = {hidden_place(item.name) for item in graph.objects}
         states = [self.expectation.at(step) for step in steps]
@@ -184,6 +196,7 @@ class Evidence:
             if rest.holds(item.position_world):
                 self.expectation.learn(item, rest)
                 self._suspicions.pop(name, None)
+                self._in_place.add(name)
                 return
         held = name == about_to_rise
         if held and _is_lifted(item, options[-1]):

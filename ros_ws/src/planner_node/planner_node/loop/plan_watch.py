@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from enum import IntEnum
 
 from tamp_runtime.motion_report import MotionReport
 
@@ -16,6 +18,29 @@ from .scene import Scene, Sighting
 from .timeline import Timeline
 
 
+class Sight(IntEnum):
+    """What a frame shows of the block that is taken next, with the numbers of PlanSighting."""
+
+    SEEN = 0
+    HIDDEN = 1
+    DOUBTFUL = 2
+
+
+@dataclass(frozen=True)
+class PlanSight:
+    """What one frame shows of what a plan takes next.
+
+    Attributes:
+        stamp: when the frame was taken, in ROS time [ns].
+        move: index of the move whose block is taken next.
+        sight: of this block.
+    """
+
+    stamp: int
+    move: int
+    sight: Sight
+
+
 class PlanWatch:
     """Compares frames with a plan that is carried out.
 
@@ -24,6 +49,7 @@ class PlanWatch:
 
     Attributes:
         contradiction: what was seen to happen, as a sentence; empty while all is as predicted.
+        sight: what the newest frame shows of what is taken next; None where nothing is to be.
     """
 
     def __init__(self, plan: Plan, patience: int = 1) -> None:
@@ -32,6 +58,7 @@ class PlanWatch:
         self._evidence = Evidence(Expectation(plan), patience)
         self._newest = plan.scene.stamp
         self.contradiction = ""
+        self.sight: PlanSight | None = None
 
     def hear(self, report: MotionReport) -> None:
         """Takes a report of the motion node on the plan."""
@@ -43,11 +70,19 @@ class PlanWatch:
             return bool(self.contradiction)
         if sighting.stamp <= self._newest or self._timeline.off_course:
             return False
-        self._newest = sighting.stamp
+        self._newest, self.sight = sighting.stamp, None
         steps = self._timeline.steps_at(sighting.stamp)
         told = self._evidence.weigh(sighting, steps)
         self.contradiction = "; ".join(self._clause(item, sighting.graph) for item in told)
+        name = self._evidence.expectation.picked(steps[-1])
+        if name and not told:
+            self.sight = PlanSight(sighting.stamp, steps[-1] // 2, self._sight_of(name, sighting))
         return bool(self.contradiction)
+
+    def _sight_of(self, name: str, sighting: Sighting) -> Sight:
+        if not sighting.graph.objects or self._evidence.doubts:
+            return Sight.DOUBTFUL
+        return Sight.SEEN if self._evidence.is_in_place(name) else Sight.HIDDEN
 
     def is_as_predicted(self, scene: Scene, moves_done: int) -> bool:
         """Whether a scene is as the plan predicts it after so many moves, to the last block."""
