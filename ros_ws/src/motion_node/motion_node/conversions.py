@@ -10,7 +10,11 @@ from numpy.typing import NDArray
 from sensor_msgs.msg import JointState
 from tamp_interfaces.msg import PlanSighting as PlanSightingMsg
 from tamp_interfaces.msg import SymbolicPlan
-from tamp_runtime.messages.scene_graph import graph_from_message, moves_from_messages
+from tamp_runtime.messages.scene_graph import (
+    graph_from_message,
+    moves_from_messages,
+    object_from_message,
+)
 from tamp_runtime.messages.stamps import duration_from_seconds, seconds, stamp_from_nanoseconds
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
@@ -60,7 +64,11 @@ def sighting_from_message(message: PlanSightingMsg) -> PlanSighting:
         ValueError: if it is of a kind that is not known.
     """
     return PlanSighting(
-        message.plan_id, seconds(message.header.stamp), message.move, Sight(message.sight)
+        message.plan_id,
+        seconds(message.header.stamp),
+        message.move,
+        Sight(message.sight),
+        tuple(object_from_message(item) for item in message.moved),
     )
 
 

@@ -38,6 +38,7 @@ from .conversions import (
     trajectory_to_message,
     trajectory_to_two_messages,
 )
+from .correcting import choices_of, corrected
 from .errors import InfeasibleError, JointStateError, MotionError
 from .execution.arm_state import ArmState, ArmStateBox
 from .execution.condition import Condition
@@ -132,6 +133,9 @@ class MotionNode(Node):
             self._suggest,
             lambda plan, motion, at: self._planners.in_the_way(motion, plan.graph, at),
             self._sightings,
+            lambda planner, plan, first, now, at, graph: corrected(
+                planner, now, at, graph, plan.moves, choices=choices_of(first)
+            ),
         )
         self._worker = PlanWorker(
             executive, condition, self._publish, self._on_defect, self._presence.conflict

@@ -16,6 +16,7 @@ from tamp_runtime.messages.scene_graph import (
     graph_from_message,
     graph_to_message,
     moves_to_messages,
+    object_to_message,
     relations_to_messages,
 )
 from tamp_runtime.messages.stamps import nanoseconds, stamp_from_nanoseconds
@@ -76,7 +77,11 @@ def stop_to_message(plan_id: str, stamp: int) -> SymbolicPlan:
 def sight_to_message(plan_id: str, sight: PlanSight) -> PlanSighting:
     """What is seen of a plan that is watched."""
     return PlanSighting(
-        header=_header(sight.stamp, ""), plan_id=plan_id, move=sight.move, sight=int(sight.sight)
+        header=_header(sight.stamp, ""),
+        plan_id=plan_id,
+        move=sight.move,
+        sight=int(sight.sight),
+        moved=[object_to_message(item) for item in sight.moved],
     )
 
 

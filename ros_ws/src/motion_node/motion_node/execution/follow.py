@@ -156,6 +156,7 @@ class Follower:
         trajectory: Trajectory,
         on_progress: Callable[[Trajectory, float], None] = lambda _trajectory, _time: None,
         stopped: Callable[[], bool] = lambda: False,
+        moving: bool = False,
     ) -> bool:
         """Sends a trajectory and watches it; True when the arm has arrived at its end.
 
@@ -163,6 +164,7 @@ class Follower:
             on_progress: told the trajectory's time after each joint state.
             stopped: polled after each joint state of an arm that has started; returns False at
                 once when it says so, with the trajectory still running.
+            moving: it replaces one that is under way, and begins as that goes on.
 
         Raises:
             ExecutionError: if it does not go as it should.
@@ -172,7 +174,7 @@ class Follower:
         # Not the state from which the motion was optimised: that took a while.
         state = self._newest_if_fresh() or patience.wait(self._arm.newest())
         away, _ = state.positions.furthest(trajectory.positions[0])
-        if away > self.START_TOLERANCE:
+        if away > self.START_TOLERANCE and not moving:
             raise ExecutionError(
                 MotionReason.TRACKING_LOST,
                 "the arm has moved while its motion was optimised; let it rest, and ask again",

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Final
 
+from scene_graph import SceneObject
+
 from ..phases import PICK
 from ..timing.trajectory import Interval, Trajectory
 from .arm_state import ArmState
@@ -48,12 +50,14 @@ class PlanSighting:
         stamp: when it was taken, by the clock of the joint states [s].
         move: index of the move whose block is to be taken next.
         sight: of this block.
+        moved: blocks that were moved a little since the plan was made, as they are seen now.
     """
 
     plan_id: str
     stamp: float
     move: int
     sight: Sight = Sight.SEEN
+    moved: tuple[SceneObject, ...] = ()
 
 
 class Sightings:
@@ -62,11 +66,19 @@ class Sightings:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._newest: dict[Sight, PlanSighting] = {}
+        self._moved: tuple[str, tuple[SceneObject, ...]] = ("", ())
 
     def put(self, sighting: PlanSighting) -> None:
         """Takes what is told."""
         with self._lock:
             self._newest[sighting.sight] = sighting
+            self._moved = (sighting.plan_id, sighting.moved)
+
+    def moved(self, plan_id: str) -> tuple[SceneObject, ...]:
+        """The blocks of a plan that were moved a little since it was made."""
+        with self._lock:
+            told_of, moved = self._moved
+            return moved if told_of == plan_id else ()
 
     def age(self, plan_id: str, move: int, now: float) -> float:
         """How old the newest picture is that has the block of a move where it is to be taken [s].

@@ -233,6 +233,8 @@ class ClosedLoop:
                 raise
             self._because(str(error))
             raise failure from error
+        for name, away in watch.nudged.items() if watch is not None else ():
+            self._remarks.append(f"{name} was moved by {1000 * away:.0f} mm, and the way corrected")
         if end.contradicted and watch is not None:
             self._remarks.append(watch.contradiction)
             if watch.is_as_predicted(scene, end.report.moves_done):

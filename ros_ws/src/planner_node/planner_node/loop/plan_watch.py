@@ -9,7 +9,7 @@ from enum import IntEnum
 
 from tamp_runtime.motion_report import MotionReport
 
-from scene_graph import UP, SceneGraph
+from scene_graph import UP, SceneGraph, SceneObject
 
 from .evidence import Evidence, Finding, Suspicion
 from .expectation import Expectation
@@ -34,11 +34,13 @@ class PlanSight:
         stamp: when the frame was taken, in ROS time [ns].
         move: index of the move whose block is taken next.
         sight: of this block.
+        moved: blocks that were moved a little since the plan was made, as they are seen now.
     """
 
     stamp: int
     move: int
     sight: Sight
+    moved: tuple[SceneObject, ...] = ()
 
 
 class PlanWatch:
@@ -49,7 +51,8 @@ class PlanWatch:
 
     Attributes:
         contradiction: what was seen to happen, as a sentence; empty while all is as predicted.
-        sight: what the newest frame shows of what is taken next; None where nothing is to be.
+        sight: what the newest frame shows of what is taken next; None where that contradicts
+            the plan, or before any.
     """
 
     def __init__(self, plan: Plan, patience: int = 1) -> None:
@@ -75,11 +78,23 @@ class PlanWatch:
         told = self._evidence.weigh(sighting, steps)
         self.contradiction = "; ".join(self._clause(item, sighting.graph) for item in told)
         name = self._evidence.expectation.picked(steps[-1])
-        if name and not told:
-            self.sight = PlanSight(sighting.stamp, steps[-1] // 2, self._sight_of(name, sighting))
+        if not told:
+            sight, moved = self._sight_of(name, sighting), tuple(self._evidence.nudged.values())
+            self.sight = PlanSight(sighting.stamp, steps[-1] // 2, sight, moved)
         return bool(self.contradiction)
 
+    @property
+    def nudged(self) -> dict[str, float]:
+        """How far blocks were moved that were taken where they were then, by name [m]."""
+        before = self._plan.scene.graph
+        return {
+            name: math.dist(item.position_world, before.object(name).position_world)
+            for name, item in self._evidence.nudged.items()
+        }
+
     def _sight_of(self, name: str, sighting: Sighting) -> Sight:
+        if not name:
+            return Sight.HIDDEN
         if not sighting.graph.objects or self._evidence.doubts:
             return Sight.DOUBTFUL
         return Sight.SEEN if self._evidence.is_in_place(name) else Sight.HIDDEN
