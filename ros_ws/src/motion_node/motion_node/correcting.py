@@ -53,7 +53,7 @@ def corrected(
             is now.
         moves: those of the motion.
         to_next_switch: only as far as the next block is taken or put down.
-        choices: how the blocks are taken and put down, one a move; those of the motion if not given.
+        choices: how the blocks are taken and put down, one a move; none: as in the motion.
 
     Returns:
         A motion whose trajectory begins at ``at`` with the arm's position and velocity there.

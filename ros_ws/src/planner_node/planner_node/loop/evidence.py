@@ -161,7 +161,7 @@ class Evidence:
                 continue
             self._weigh_block(name, seen.get(name), options, graph, about_to_rise, steps)
         unknown = {hidden_place(name) for name in states[0]}
-        visible = [place for place in graph.places if place.index not in unknown]
+        visible = [item for item in graph.places if item.index not in unknown and not item.aside]
         for name, item in seen.items():
             if name not in states[0] and all(item.size) and _over_a_place(item, visible):
                 frames = FOREIGN_FRAMES
@@ -265,7 +265,7 @@ def _is_at(item: SceneObject, rest: Rest) -> bool:
 def _is_on_something(item: SceneObject, graph: SceneGraph) -> bool:
     """Whether a block is seen to stand on a place or a block, and not in the air."""
     low = item.position_world[2] - 0.5 * item.size[2]
-    tops = [place.position_world[2] for place in graph.places]
+    tops = [place.position_world[2] for place in graph.places if not place.aside]
     tops += [
         other.position_world[2] + 0.5 * other.size[2]
         for other in graph.objects
