@@ -86,7 +86,7 @@ def test_what_nobody_disturbs_is_not_stopped_and_a_swap_is_noticed_under_way(gra
 
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("graph", [ALONE], indirect=True)
-def test_a_block_that_is_pushed_a_little_is_taken_from_where_it_is(graph: Any) -> None:
+def test_a_block_that_is_not_where_it_was_or_is_to_be_is_taken_from_where_it_is(graph: Any) -> None:
     with PlannerClient(context=graph) as planner, DisturbClient(context=graph) as simulator:
         planner.start("yellow on stack1, blue on yellow, cyan on blue", timeout=PATIENCE)
         wait_for_phase(planner, "pick")
@@ -99,3 +99,15 @@ def test_a_block_that_is_pushed_a_little_is_taken_from_where_it_is(graph: Any) -
         # On a machine so slow that it is seen only when the hand is there it is planned anew.
         assert "cyan_box was moved by" in told or "cyan_box was moved, and" in told, told
         assert "closed on nothing" not in told
+
+        # Another one stands beside the last place.
+        add = Disturb.Request(kind=Disturb.Request.ADD, blocks=["green_box"])
+        add.position.x, add.position.y = 0.5, 0.21
+        answer = simulator.disturb(add, PATIENCE)
+        assert answer.success, answer.message
+        planner.start("red on green", timeout=PATIENCE)
+        result = planner.result(timeout=5.0 * PATIENCE)
+        assert result.status == AchieveGoal.Result.SUCCESS, result.message
+        assert "green_box stood" in result.message and "and was fetched" in result.message
+        assert result.moves_planned == 2
+        assert len(result.final.bases) == 3

@@ -50,7 +50,7 @@ def test_a_plan_that_nobody_watches_waits_for_nothing(bench: Bench) -> None:
     assert len(bench.arm.sent) == 1
 
 
-@pytest.mark.parametrize("before", [None, Sight.DOUBTFUL, Sight.HIDDEN])
+@pytest.mark.parametrize("before", [None, Sight.DOUBTFUL])
 @pytest.mark.parametrize("move", [0, 1])
 def test_the_hand_stands_open_at_the_block_until_it_is_seen(
     bench: Bench, move: int, before: Sight | None
@@ -79,6 +79,27 @@ def test_the_hand_stands_open_at_the_block_until_it_is_seen(
     assert (standing[-1].phase, standing[-1].move, standing[-1].moves_done) == ("pick", move, move)
     assert bench.arm.at_home()
     assert len(bench.arm.sent) == 3  # all of it, as far as the block, and the rest
+
+
+@pytest.mark.parametrize("move", [0, 1])
+def test_a_hand_that_hides_the_block_rises_to_look(bench: Bench, move: int) -> None:
+    """It is seen as soon as the hand is 0.1 rad away."""
+
+    def sees(now: int) -> Sight | None:
+        if now != move:
+            return Sight.SEEN
+        away = float(np.abs(bench.arm.joints.arm - SWITCHES[2 * move]).max())
+        near = Sight.HIDDEN if away < 0.1 else Sight.SEEN
+        # Of what was seen on the way down nothing is known.
+        return near if "looking whether" in bench.executive.report.message else None
+
+    seeing(bench, sees)
+    assert bench.carry_out(WATCHED).state is MotionState.SUCCEEDED
+    # All of it, as far as the block, up, down, and the rest.
+    assert len(bench.arm.sent) == 5
+    for sent, joints in bench.arm.sent[2:]:
+        assert np.abs(sent.positions.arm[0] - joints.arm).max() < 1e-2
+        np.testing.assert_allclose(sent.velocities.arm[[0, -1]], 0.0, atol=1e-9)
 
 
 def test_where_looking_takes_long_an_older_picture_will_do(bench: Bench) -> None:

@@ -284,7 +284,14 @@ class Follower:
             self.brake()  # which opens them again
             return
         begin = min(self.time + self.LEAD, grasp.start - _SHORTEST_SECONDS)
-        way = self._trajectory.cut(begin, grasp.start)
+        self.go_along(self._trajectory.cut(begin, grasp.start))
+
+    def go_along(self, way: Trajectory) -> None:
+        """Goes a short way that ends at rest, and stands there.
+
+        Raises:
+            ExecutionError: if the arm does not come there, or joint states stay out.
+        """
         self._trajectory, self.under_way, self.time = way, False, 0.0
         self._send(way, None)
         patience = self._patience()

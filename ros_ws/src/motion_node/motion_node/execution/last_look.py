@@ -30,6 +30,8 @@ OLDEST: Final = 1.0
 #: So much before the hand arrives it is decided whether it stands there: a trajectory that ends
 #: there has to be on its way by then [s].
 DECIDES: Final = 0.08
+#: So much before the hand arrives it is over the block, and hides it less [s].
+OVER: Final = 0.6
 #: For so long nothing is seen before that is given up, by the clock of the joint states [s].
 GIVES_UP: Final = 5.0
 
@@ -74,6 +76,14 @@ class Sightings:
             self._newest[sighting.sight] = sighting
             self._moved = (sighting.plan_id, sighting.moved)
 
+    def is_hidden(self, plan_id: str, move: int, since: float) -> bool:
+        """Whether a picture that was taken since then does not show the block, and has no doubt."""
+        with self._lock:
+            hidden, doubt = self._newest.get(Sight.HIDDEN), self._newest.get(Sight.DOUBTFUL)
+        if hidden is None or (hidden.plan_id, hidden.move) != (plan_id, move):
+            return False
+        return hidden.stamp > max(since, doubt.stamp if doubt is not None else since)
+
     def moved(self, plan_id: str) -> tuple[SceneObject, ...]:
         """The blocks of a plan that were moved a little since it was made."""
         with self._lock:
@@ -111,6 +121,10 @@ class LastLook:
         """
         age = self._sightings.age(self._plan_id, move, state.stamp)
         return age <= (OLDEST if stands >= WAITS else RECENT)
+
+    def is_hidden(self, move: int, since: float) -> bool:
+        """Whether the hand is seen to hide the block since then, by the joint states' clock [s]."""
+        return self._sightings.is_hidden(self._plan_id, move, since)
 
     def close(self, move: int) -> None:
         """The fingers close on the block of a move from now on."""

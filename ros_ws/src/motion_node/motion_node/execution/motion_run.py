@@ -13,7 +13,7 @@ from .arm_state import ArmStates
 from .corrections import Corrections, needs_a_stop
 from .errors import ExecutionError
 from .follow import Follower
-from .last_look import GIVES_UP, LastLook, grasp_ahead
+from .last_look import GIVES_UP, OVER, LastLook, grasp_ahead
 
 
 class MotionRun:
@@ -97,7 +97,7 @@ class MotionRun:
         return self._look.is_missing(self._follower, self._left, state)
 
     def _stood(self) -> bool:
-        """Stands at the next block until it is seen; False: it is to stop."""
+        """Stands at the next block until it is seen, above it if the hand hides it; False: stop."""
         grasp = grasp_ahead(self._left, self._follower.time)
         assert grasp is not None and self._look is not None
         self._follower.stand_before(grasp)
@@ -112,6 +112,8 @@ class MotionRun:
         name, move = grasp.phase.object_name, grasp.phase.move
         self._say(f"looking whether {name} is where it is to be taken")
         first: float | None = None
+        way = self._left.interval_at(grasp.start - 1e-6)
+        over, risen = max(way.start, grasp.start - OVER), False
         for state in self._follower.states():
             if self._stopped():
                 return False
@@ -120,11 +122,17 @@ class MotionRun:
             first = state.stamp if first is None else first
             if look.allows(move, state, state.stamp - first):
                 break
+            if not risen and look.is_hidden(move, first):
+                risen = True
+                self._follower.go_along(self._left.back(grasp.start, over))
+                continue
             if state.stamp - first > GIVES_UP:
                 raise ExecutionError(
                     MotionReason.UNSEEN,
                     f"{name} was not seen for {GIVES_UP:g} s where it is to be taken",
                     recoverable=True,
                 )
+        if risen:
+            self._follower.go_along(self._left.back(over, grasp.start))
         self._say(f"picking {name}")
         return True

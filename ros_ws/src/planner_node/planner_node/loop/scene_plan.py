@@ -67,7 +67,7 @@ def not_places(scene: Scene) -> list[Exclusion]:
         if place.aside and stack
     ]
     return [
-        Exclusion(name, target=place.index, onto=onto, reason="it is no place")
+        Exclusion(name, target=place.index, onto=onto)
         for stack, place in beside
         for onto in ((), stack)
         for names in scene.stacks

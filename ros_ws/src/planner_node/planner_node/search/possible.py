@@ -45,7 +45,7 @@ class Exclusion:
         source, under: the stack it takes it from, and the blocks below it there; None: any.
         target, onto: the stack it puts it on, and the blocks there before; None: any.
         state: the only arrangement that it is excluded in; None: any.
-        reason: why, in words.
+        reason: why, in words; empty: that goes without saying.
     """
 
     block: str
@@ -119,9 +119,9 @@ def plan_avoiding(
     try:
         path = _cheapest(problem, exclusions, limits)
     except UnreachableError as error:
-        if not exclusions:
+        listed = tuple(dict.fromkeys(str(item) for item in exclusions if item.reason))
+        if not listed:
             raise
-        listed = tuple(dict.fromkeys(str(item) for item in exclusions))
         raise ImpossibleError(
             f"impossible: no sequence of moves that the arm can make leads from "
             f"{format_stacks(initial)} to '{goal}'; excluded: {'; '.join(listed)}",
