@@ -21,17 +21,17 @@ from .arm_state import ArmState
 from .follow import Follower
 
 #: Of a picture that is no older than this no newer one is waited for: a camera of 10 Hz, and what
-#: looks at its pictures, take less [s].
-RECENT: Final = 0.3
+#: looks at its pictures, take less even where two cores do all [s].
+RECENT: Final = 0.6
 #: Where looking takes longer, a newer one is waited for so long [s], ...
 WAITS: Final = 0.06
 #: ... and then one will do that is no older than this [s].
-OLDEST: Final = 1.0
+OLDEST: Final = 1.2
 #: So much before the hand arrives it is decided whether it stands there: a trajectory that ends
 #: there has to be on its way by then [s].
 DECIDES: Final = 0.08
 #: So much before the hand arrives it is over the block, and hides it less [s].
-OVER: Final = 0.6
+OVER: Final = 0.45
 #: For so long nothing is seen before that is given up, by the clock of the joint states [s].
 GIVES_UP: Final = 5.0
 

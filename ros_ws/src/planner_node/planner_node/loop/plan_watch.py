@@ -9,7 +9,7 @@ from enum import IntEnum
 
 from tamp_runtime.motion_report import MotionReport
 
-from scene_graph import UP, SceneGraph, SceneObject
+from scene_graph import UP, SceneGraph, SceneObject, base_name
 
 from .evidence import Evidence, Finding, Suspicion
 from .expectation import Expectation
@@ -128,7 +128,8 @@ def _where(finding: Finding, graph: SceneGraph) -> str:
           (finding.name, UP)]  # fmt: skip
     if rest is None:
         return f"on {on[0]}" if on else _point(position)
-    if on and on[0] != rest.support:
+    spots = {base_name(place.index) for place in graph.places if place.aside}
+    if on and on[0] != rest.support and on[0] not in spots:
         return f"seen on {on[0]}"
     away = math.dist(position[:2], rest.position_world[:2])
     if away > rest.tolerance:
