@@ -121,8 +121,8 @@ def test_what_takes_longer_than_there_was_time_is_tried_further_ahead(bench: Cor
 
 
 def test_what_cannot_be_corrected_under_way_stops_the_arm(bench: Corrected) -> None:
-    def never(_now: Motion, _at: float, _graph: SceneGraph) -> Motion:
-        raise InfeasibleError(PATH, "acceleration")
+    def never(now: Motion, at: float, graph: SceneGraph) -> Motion:
+        raise InfeasibleError(PATH, f"{at:g} {now} {graph}")
 
     bench.correct = never
     bench.when(PICK, 1, lambda: bench.moved.update(blue_box=(0.53, 0.1, 0.02)))

@@ -100,8 +100,7 @@ def test_more_stacks_than_places_are_a_problem_but_still_stacks() -> None:
 
 def stand_at(*centres: tuple[float, float, float]) -> Standing:
     """Of blocks that were measured there [m]."""
-    labels = np.arange(1, len(centres) + 1, dtype=np.uint16).repeat(64 * 256 // len(centres) + 1)
-    labels = np.resize(labels, (256, 256)).astype(np.uint16)
+    labels = np.resize(np.arange(1, len(centres) + 1, dtype=np.uint16), (256, 256))
     spread = np.tile([[0.5, 0.5]], (len(centres), 1))
     coordinates = Coordinates(spread, spread, spread, np.ones(len(centres)))
     observation = Observation(np.zeros((256, 256, 3), np.uint8), labels, None, CAMERA)

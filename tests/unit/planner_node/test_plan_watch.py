@@ -214,7 +214,7 @@ def test_one_frame_is_enough_that_perception_is_sure_of() -> None:
 
 @pytest.mark.parametrize("step", [0, 1, 2])
 def test_a_block_that_was_moved_a_little_is_told_once_it_rests(step: int) -> None:
-    plan, watch, course = course_of(step)
+    _, watch, course = course_of(step)
     x, y, z = centre(1, 0)
     for number, item in enumerate(course[4:8]):  # it still slides
         assert not watch.see(item.frame({"green_box": (x + 0.016 + 0.006 * number, y, z)}))

@@ -124,7 +124,7 @@ class RowOfPlaces:
         more = [
             Place(
                 len(feet) + number,
-                (*(float(value) for value in centres_world[item, :2]), float(feet[0, 2])),
+                (float(centres_world[item, 0]), float(centres_world[item, 1]), float(feet[0, 2])),
                 aside=True,
             )
             for number, (item,) in enumerate(beside)
