@@ -12,7 +12,18 @@ from executive_bench import Bench
 from simulated_arm import BESIDE, BLOCKS, PLAN, SWITCHES
 from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
 
-from motion_node.execution.last_look import GIVES_UP, OLDEST, RECENT, PlanSighting, Sight, Sightings
+from motion_node.execution.arm_state import ArmState
+from motion_node.execution.last_look import (
+    BEFORE_HAND,
+    GIVES_UP,
+    OLDEST,
+    RECENT,
+    LastLook,
+    PlanSighting,
+    Sight,
+    Sightings,
+)
+from motion_node.robots.joints import JointValues
 
 WATCHED = replace(PLAN, watched=True)
 
@@ -155,3 +166,16 @@ def test_only_a_recent_picture_of_this_plan_and_move_counts() -> None:
     assert sightings.age("a", 2, 10.4) == float("inf")
     sightings.put(PlanSighting("a", 10.5, 2))
     assert sightings.age("a", 2, 10.6) == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(("hides", "waits"), [(False, False), (True, True)])
+def test_an_older_picture_will_do_where_newer_ones_show_the_hand_before_the_block(
+    hides: bool, waits: bool
+) -> None:
+    sightings = Sightings()
+    look, q = LastLook(sightings, "a"), JointValues(np.zeros(2), np.zeros(2))
+    sightings.put(PlanSighting("a", 10.0, 0))
+    if hides:
+        sightings.put(PlanSighting("a", 12.3, 0, Sight.HIDDEN))
+    for now, allowed in ((10.0 + OLDEST + 0.1, waits), (10.0 + BEFORE_HAND + 0.1, False)):
+        assert look.allows(0, ArmState(now, now, q, 0.0), stands=1.0) is allowed

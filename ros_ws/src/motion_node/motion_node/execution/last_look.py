@@ -22,11 +22,13 @@ from .follow import Follower
 
 #: Of a picture that is no older than this no newer one is waited for: a camera of 10 Hz, and what
 #: looks at its pictures, take less even where two cores do all [s].
-RECENT: Final = 0.6
+RECENT: Final = 0.8
 #: Where looking takes longer, a newer one is waited for so long [s], ...
 WAITS: Final = 0.06
-#: ... and then one will do that is no older than this [s].
-OLDEST: Final = 1.2
+#: ... and then one will do that is no older than this [s], ...
+OLDEST: Final = 2.0
+#: ... or than this where newer ones only show the hand before the block [s].
+BEFORE_HAND: Final = 3.0
 #: So much before the hand arrives it is decided whether it stands there: a trajectory that ends
 #: there has to be on its way by then [s].
 DECIDES: Final = 0.08
@@ -120,6 +122,8 @@ class LastLook:
             stands: for how long the hand has stood at the block [s].
         """
         age = self._sightings.age(self._plan_id, move, state.stamp)
+        if self._sightings.is_hidden(self._plan_id, move, state.stamp - age):
+            return age <= BEFORE_HAND
         return age <= (OLDEST if stands >= WAITS else RECENT)
 
     def is_hidden(self, move: int, since: float) -> bool:
