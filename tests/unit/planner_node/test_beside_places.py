@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from loop_bench import LoopBench, fail, obey
 from tamp_runtime.motion_report import MotionReason
 
+from planner_node.errors import GivenPlanError
 from planner_node.goals import Goal
-from planner_node.loop import Scene, Sighting, Status, plan_in, scene_in
+from planner_node.loop import Scene, Sighting, Status, given_plan_in, plan_in, scene_in
 from planner_node.settings import Settings
 from scene_graph import (
     UP,
@@ -99,6 +100,17 @@ def test_one_that_is_out_of_reach_is_refused_with_the_reason() -> None:
     assert outcome.status == Status.MOTION_FAILED
     assert "out of reach" in outcome.message
     assert bench.stacks == START
+
+
+def test_another_planners_plan_has_to_put_it_on_a_place_and_nothing_in_its_stead() -> None:
+    scene, settings = scene_in(seen(START)), Settings()
+    goal = Goal((Relation("yellow_box", UP, "blue_box"),))
+    found = given_plan_in(scene, "(3, 2)\n(0, 2)", goal, settings)
+    assert len(found.moves) == 2
+    with pytest.raises(GivenPlanError, match="blue_box not on stack3"):
+        given_plan_in(scene, "(0, 3)", goal, settings)
+    with pytest.raises(GivenPlanError, match="step 2 of the plan puts a block on stack3"):
+        given_plan_in(scene, "(3, 2)\n(1, 3)\n(0, 2)", goal, settings)
 
 
 @st.composite

@@ -8,7 +8,12 @@ from dataclasses import replace
 
 from scene_graph import NOT, UP, Relation, Stacks, base_name
 
-from ..errors import AmbiguousObjectError, GoalImageError, UnknownObjectError
+from ..errors import (
+    AmbiguousObjectError,
+    GivenPlanError,
+    GoalImageError,
+    UnknownObjectError,
+)
 from ..goals.contradictions import check_contradictions
 from ..goals.goal import Goal, ResolveGoal
 from ..search import SearchResult
@@ -67,7 +72,7 @@ def not_places(scene: Scene) -> list[Exclusion]:
         if place.aside and stack
     ]
     return [
-        Exclusion(name, target=place.index, onto=onto)
+        Exclusion(name, target=place.index, onto=onto, told=False)
         for stack, place in beside
         for onto in ((), stack)
         for names in scene.stacks
@@ -81,7 +86,16 @@ def given_plan_in(scene: Scene, text: str, goal: Goal, settings: Settings) -> Se
     Raises:
         GivenPlanError: it does not hold; the message names the step.
     """
-    return checked_plan(text, scene.stacks, cleared_up(goal, scene), stability_in(scene, settings))
+    found = checked_plan(text, scene.stacks, cleared_up(goal, scene), stability_in(scene, settings))
+    for step, move in enumerate(found.moves):
+        if scene.graph.places[move.target].aside:
+            where = base_name(move.target)
+            raise GivenPlanError(
+                f"step {step + 1} of the plan puts a block on {where}, which is no place: just "
+                f"where {scene.stacks[move.target][0]} stands beside the places",
+                step,
+            )
+    return found
 
 
 def uncover_in(

@@ -45,7 +45,8 @@ class Exclusion:
         source, under: the stack it takes it from, and the blocks below it there; None: any.
         target, onto: the stack it puts it on, and the blocks there before; None: any.
         state: the only arrangement that it is excluded in; None: any.
-        reason: why, in words; empty: that goes without saying.
+        reason: why, in words.
+        told: whether a sentence names it; else it goes without saying.
     """
 
     block: str
@@ -55,6 +56,7 @@ class Exclusion:
     onto: tuple[str, ...] = ()
     state: Stacks | None = None
     reason: str = ""
+    told: bool = True
 
     def forbids(self, stacks: Stacks, move: Move) -> bool:
         """Whether it is this move in this arrangement."""
@@ -119,7 +121,7 @@ def plan_avoiding(
     try:
         path = _cheapest(problem, exclusions, limits)
     except UnreachableError as error:
-        listed = tuple(dict.fromkeys(str(item) for item in exclusions if item.reason))
+        listed = tuple(dict.fromkeys(str(item) for item in exclusions if item.told))
         if not listed:
             raise
         raise ImpossibleError(
