@@ -22,7 +22,7 @@ from .follow import Follower
 
 #: Of a picture that is no older than this no newer one is waited for: a camera of 10 Hz, and what
 #: looks at its pictures, take less even where two cores do all [s].
-RECENT: Final = 0.8
+RECENT: Final = 1.0
 #: Where looking takes longer, a newer one is waited for so long [s], ...
 WAITS: Final = 0.06
 #: ... and then one will do that is no older than this [s], ...
