@@ -16,12 +16,13 @@ from motion_node.execution.corrections import AHEAD
 from motion_node.execution.last_look import PlanSighting
 from motion_node.phases import PICK, PLACE
 from motion_node.planner import Motion
-from scene_graph import SceneGraph, SceneObject
+from scene_graph import Place, SceneGraph, SceneObject, up_relations
 
 Point = tuple[float, float, float]
 GRAPH = SceneGraph(
     tuple(SceneObject(name, "blue", "box", (0.5, 0.1 * i, 0.02)) for i, name in enumerate(BLOCKS)),
-    frozenset(),
+    up_relations(((BLOCKS[0],), (BLOCKS[1],), ())),
+    tuple(Place(i, (0.5, 0.1 * i, 0.0)) for i in range(3)),
 )
 WATCHED = replace(PLAN, graph=GRAPH, watched=True)
 
@@ -66,12 +67,13 @@ def bench() -> Corrected:
     return Corrected()
 
 
-@pytest.mark.parametrize("phase", [PICK, PLACE])
+@pytest.mark.parametrize(("phase", "move"), [(PICK, 0), (PLACE, 0), (PICK, 1)])
 def test_what_was_moved_is_corrected_once_and_without_standing(
-    bench: Corrected, phase: str
+    bench: Corrected, phase: str, move: int
 ) -> None:
+    """From the next switch on, or on the way to the block."""
     there = (0.53, 0.1, 0.02)
-    bench.when(phase, 0, lambda: bench.moved.update(blue_box=there))
+    bench.when(phase, move, lambda: bench.moved.update(blue_box=there))
     end = bench.carry_out(WATCHED)
     assert (end.state, end.moves_done) == (MotionState.SUCCEEDED, 2)
     assert [where for _, where in bench.asked] == [
@@ -80,7 +82,7 @@ def test_what_was_moved_is_corrected_once_and_without_standing(
     assert len(bench.arm.sent) == 2
     assert max(bench.jumps()) < 0.05
     speed = np.abs(bench.arm.sent[1][0].velocities.arm[0]).max()
-    assert speed > 0.0 or phase == PICK
+    assert (speed > 0.1) == ((phase, move) == (PICK, 1))
     progress = [
         report.progress for report in bench.reports if report.state is MotionState.EXECUTING
     ]
@@ -94,27 +96,28 @@ def test_of_several_moves_each_is_corrected(bench: Corrected) -> None:
     assert [where["blue_box"][1] for _, where in bench.asked] == [0.1, 0.13]
 
 
-def test_while_fingers_move_a_correction_waits_for_the_next_way(bench: Corrected) -> None:
-    grips = two_moves().intervals[1]
+@pytest.mark.parametrize(("before", "at"), [(2, 3), (0, 1)])
+def test_a_correction_begins_where_the_arm_rests_if_it_is_not_on_its_way_to_the_block(
+    bench: Corrected, before: int, at: int
+) -> None:
+    intervals = two_moves().intervals
     bench.arm.when(
-        lambda: bench.follower.time > grips.start - AHEAD + 0.05,
+        lambda: bench.follower.time > intervals[before].start + 0.01,
         lambda: bench.moved.update(blue_box=(0.53, 0.1, 0.02)),
     )
     assert bench.carry_out(WATCHED).state is MotionState.SUCCEEDED
-    (at, _), *others = bench.asked
-    assert at == pytest.approx(grips.end)
-    assert not others
+    assert [begins for begins, _ in bench.asked] == [pytest.approx(intervals[at].end)]
 
 
 def test_what_takes_longer_than_there_was_time_is_tried_further_ahead(bench: Corrected) -> None:
-    took = iter([1.5 * AHEAD])
+    took = iter([1.1 * AHEAD])
 
     def slowly(now: Motion, at: float, graph: SceneGraph) -> Motion:
         bench.arm.pass_time(next(took, 0.0))
         return bench.solve(now, at, graph)
 
     bench.correct = slowly
-    bench.when(PLACE, 0, lambda: bench.moved.update(blue_box=(0.53, 0.1, 0.02)))
+    bench.when(PICK, 0, lambda: bench.moved.update(green_box=(0.53, 0.0, 0.02)))
     assert bench.carry_out(WATCHED).state is MotionState.SUCCEEDED
     assert len(bench.asked) == 2
     assert len(bench.arm.sent) == 2

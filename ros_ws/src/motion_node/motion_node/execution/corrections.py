@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Blocks that are moved a little while a plan is carried out: its motion is corrected under way.
 
-The arm goes on while the correction is computed, which begins in its future. When it comes there it
-is sent on along the corrected trajectory: position and velocity go on, acceleration may jump.
+The arm goes on while the correction is computed, which begins in its future: where it next rests at a
+switch, or, where it is on its way to what was moved, on this way. When it comes there it is sent on
+along the corrected trajectory: position and velocity go on, acceleration may jump on a way.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -19,6 +20,7 @@ from scene_graph import SceneGraph, SceneObject
 from ..errors import MotionError
 from ..phases import PICK
 from ..planner import Motion
+from ..timing.trajectory import Trajectory
 from .errors import ExecutionError
 from .follow import Follower
 from .last_look import Sightings
@@ -29,7 +31,7 @@ MOVED: Final = 0.005
 #: So far ahead of the arm a correction begins [s], ...
 AHEAD: Final = 0.25
 #: ... or, where computing it took longer than that, as many times as far ...
-MORE: Final = 2.0
+MORE: Final = 1.5
 #: ... but no farther [s].
 FARTHEST: Final = 1.0
 #: The arm may be so far beyond the beginning of a correction when it is sent [s].
@@ -116,6 +118,7 @@ class Corrections:
             if interval.phase.kind == PICK and interval.phase.object_name in known:
                 raise needs_a_stop(interval.phase.object_name, "it is about to be taken")
             begins = max(begins, interval.end)  # while fingers move nothing is corrected
+        begins = self._at_a_switch(trajectory, begins, known)
         if begins >= trajectory.duration:
             return None
         if self._correct is None:
@@ -126,6 +129,17 @@ class Corrections:
             return Correction(self._correct(motion, begins, graph), begins, graph)
         except MotionError as error:
             raise needs_a_stop(names, str(error)) from error
+
+    def _at_a_switch(
+        self, trajectory: Trajectory, begins: float, moved: Mapping[str, SceneObject]
+    ) -> float:
+        """The end of the phase of a time, where the arm rests, if its end stays where it is."""
+        phase = trajectory.interval_at(begins).phase
+        stacks = self._graph.stacks()
+        beneath = stacks[phase.switch.stack] if phase.switch is not None else ()
+        if moved.keys() & {phase.object_name, *beneath}:
+            return begins
+        return [item.end for item in trajectory.intervals if item.phase is phase][-1]
 
 
 def _away(item: SceneObject, graph: SceneGraph) -> float:
