@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Blocks that are moved a little while a plan is carried out: its motion is corrected under way.
 
-The arm goes on while the correction is computed, which begins in its future: where it next rests at a
-switch, or, where it is on its way to what was moved, on this way. When it comes there it is sent on
-along the corrected trajectory: position and velocity go on, acceleration may jump on a way.
+The arm goes on while the correction is computed, which begins in its future: where it next rests at
+a switch, or, where it is on its way to what was moved, on this way. When it comes there it is sent
+on along the corrected trajectory: position and velocity go on, acceleration may jump on a way.
 """
 
 from __future__ import annotations

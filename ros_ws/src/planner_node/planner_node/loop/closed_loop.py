@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
-from tamp_runtime.motion_report import MotionReport
+from tamp_runtime.motion_report import MotionReport, MotionState
 
 from scene_graph import format_stacks
 
@@ -233,8 +233,8 @@ class ClosedLoop:
                 raise
             self._because(str(error))
             raise failure from error
-        for name, away in watch.nudged.items() if watch is not None else ():
-            self._remarks.append(f"{name} was moved by {1000 * away:.0f} mm, and the way corrected")
+        if watch is not None and end.report.state == MotionState.SUCCEEDED:
+            self._remarks += watch.told_of_moved
         if end.contradicted and watch is not None:
             self._remarks.append(watch.contradiction)
             if watch.is_as_predicted(scene, end.report.moves_done):

@@ -92,6 +92,12 @@ class PlanWatch:
             for name, item in self._evidence.nudged.items()
         }
 
+    @property
+    def told_of_moved(self) -> list[str]:
+        """A sentence about each of these blocks."""
+        return [f"{name} was moved by {1000 * away:.0f} mm, and the way corrected"
+                for name, away in self.nudged.items()]  # fmt: skip
+
     def _sight_of(self, name: str, sighting: Sighting) -> Sight:
         if not name:
             return Sight.HIDDEN
