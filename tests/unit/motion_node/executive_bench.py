@@ -7,14 +7,22 @@ import threading
 from collections.abc import Callable, Iterator
 
 import numpy as np
-from simulated_arm import HOME_Q, OPEN, PLAN, FakePlanner, SimulatedArm
+from simulated_arm import HOME_Q, OPEN, PLAN, FakePlanner, SimulatedArm, planned
 from tamp_runtime.motion_report import MotionReport
 
 from motion_node.execution.condition import Condition
+from motion_node.execution.corrections import Correct
 from motion_node.execution.executive import Executive
 from motion_node.execution.follow import Follower
+from motion_node.execution.last_look import Sightings
 from motion_node.execution.plan import Plan
 from motion_node.execution.settings import ExecutionSettings
+from motion_node.planner import Motion
+
+
+def rest_of(now: Motion, at: float) -> Motion:
+    """What is left of a motion, as a correction that changes nothing."""
+    return planned(now.trajectory.cut(at, now.trajectory.duration))
 
 
 class Bench:
@@ -32,6 +40,8 @@ class Bench:
         self.condition = Condition(
             self.arm, lambda: self.follower.grip, HOME_Q, OPEN, lambda q: np.array([*q, 0.5])
         )
+        self.sightings = Sightings()
+        self.correct: Correct = lambda now, at, _graph: rest_of(now, at)
         self.executive = Executive(
             lambda: next(self.planners),
             self.arm,
@@ -41,6 +51,8 @@ class Bench:
             lambda: self.conflict,
             suggest=lambda *_: self.suggestion,
             in_the_way=lambda _plan, _motion, at: self.in_the_way(at),
+            sightings=self.sightings,
+            correct=lambda *asked: self.correct(*asked[3:]),
         )
 
     def carry_out(self, plan: Plan = PLAN) -> MotionReport:

@@ -63,6 +63,26 @@ def test_braking_stays_on_the_path_and_starts_with_the_speed_of_the_moment(
     )
 
 
+def test_a_way_is_gone_back_and_forth_on_the_same_path_from_rest_to_rest(
+    trajectory: Trajectory,
+) -> None:
+    end = trajectory.intervals[0].end
+    for start, goal in ((end, end - 0.4), (end - 0.4, end)):
+        way = trajectory.back(start, goal)
+        assert way.duration == pytest.approx(0.8)
+        ends = trajectory.sample(np.array([start, goal]))[0].arm
+        np.testing.assert_allclose(way.positions.arm[[0, -1]], ends)
+        np.testing.assert_allclose(way.velocities.arm[[0, -1]], 0.0, atol=1e-9)
+        np.testing.assert_allclose(
+            np.gradient(way.positions.arm, way.times, axis=0)[1:-1],
+            way.velocities.arm[1:-1],
+            atol=0.03,
+        )
+        path = trajectory.sample(np.linspace(end - 0.4, end, 400))[0].arm
+        for q in way.positions.arm:
+            assert np.abs(path - q).max(axis=1).min() < 0.005
+
+
 def test_braking_does_not_run_past_a_switch(trajectory: Trajectory) -> None:
     travel = trajectory.intervals[0]
     brake = trajectory.brake(travel.end - 0.05, 0.0, 0.6)

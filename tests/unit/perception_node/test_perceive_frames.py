@@ -204,19 +204,40 @@ class TestBlocksThatDoNotStand:
         put(world, "green_cylinder", (0.0, 0.0, 0.0), turn)
         assert perceive(world).status is not GraphStatus.CONFIDENT
 
-    def test_a_block_between_two_places(self, world: World) -> None:
-        world.reset((("red_box",), (), ("blue_box",)))
-        put(world, "blue_box", (0.0, -0.075, 0.0))
+    @pytest.mark.parametrize(
+        ("layout", "name", "by"),
+        [
+            ((("red_box",), (), ("blue_box",)), "blue_box", (0.0, -0.075, 0.0)),
+            ((("red_box",), (), ("blue_box",)), "blue_box", (0.06, 0.0, 0.0)),
+            (
+                (("red_box",), ("green_box", "yellow_box"), ("blue_box",)),
+                "yellow_box",
+                (0.0, 0.075, -0.045),
+            ),
+        ],
+    )
+    def test_a_block_beside_the_places_can_be_taken_from_where_it_stands(
+        self, world: World, layout: Stacks, name: str, by: tuple[float, float, float]
+    ) -> None:
+        world.reset(layout)
+        put(world, name, by)
         perceived = perceive(world)
-        assert perceived.status is GraphStatus.UNSTABLE
-        assert "blue_box stands 7" in perceived.message
+        assert (perceived.status, perceived.message) == (GraphStatus.CONFIDENT, "")
+        graph = perceived.graph
+        assert [place.aside for place in graph.places] == [False, False, False, True]
+        assert graph.stacks()[3] == (name,)
+        true_position, _ = world.block_pose(name)
+        assert graph.object(name).position_world == pytest.approx(true_position, abs=0.003)
+        assert graph.places[3].position_world[:2] == pytest.approx(true_position[:2], abs=0.003)
 
-    def test_more_stacks_than_places(self, world: World) -> None:
-        world.reset((("red_box",), ("green_box", "yellow_box"), ("blue_box",)))
-        put(world, "yellow_box", (0.0, 0.075, -0.045))
+    def test_blocks_that_are_all_beside_the_places_are_not_believed(self, world: World) -> None:
+        world.reset((("red_box",), (), ("blue_box",)))
+        for name in ("red_box", "blue_box"):
+            put(world, name, (0.06, 0.0, 0.0))
         perceived = perceive(world)
         assert perceived.status is GraphStatus.UNSTABLE
-        assert "4 stacks" in perceived.message
+        assert " mm beside the centre of" in perceived.message
+        assert "calibrate the camera if all do" in perceived.message
 
     def test_fault_13_a_block_without_an_upright_face_lies_and_the_camera_is_not_blamed(
         self, world: World, monkeypatch: pytest.MonkeyPatch

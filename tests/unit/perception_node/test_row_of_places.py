@@ -98,6 +98,41 @@ def test_more_stacks_than_places_are_a_problem_but_still_stacks() -> None:
     assert standing.problem == "3 stacks are seen but there are 2 places"
 
 
+def stand_at(*centres: tuple[float, float, float]) -> Standing:
+    """Of blocks that were measured there [m]."""
+    labels = np.resize(np.arange(1, len(centres) + 1, dtype=np.uint16), (256, 256))
+    spread = np.tile([[0.5, 0.5]], (len(centres), 1))
+    coordinates = Coordinates(spread, spread, spread, np.ones(len(centres)))
+    observation = Observation(np.zeros((256, 256, 3), np.uint8), labels, None, CAMERA)
+    segments = Segments.from_labels(labels)
+    return RowOfPlaces(PLACES).stand(observation, segments, coordinates, np.array(centres))
+
+
+def test_a_block_beside_the_places_stands_on_a_spot_of_its_own() -> None:
+    standing = stand_at(
+        (0.5, -0.15, 0.02), (0.56, 0.02, 0.02), (0.5, -0.15, 0.065), (0.5, 0.15, 0.02)
+    )
+    assert standing.stacks == ((0, 2), (), (3,), (1,))
+    assert standing.places[3] == Place(3, (0.56, 0.02, 0.0), aside=True)
+    assert [place.aside for place in standing.places[:3]] == [False] * 3
+    assert standing.table_heights == (0.0,) * 4 and standing.problem == ""
+
+
+@pytest.mark.parametrize(
+    "centres",
+    [
+        [(0.56, -0.15, 0.02), (0.56, 0.0, 0.02), (0.56, 0.15, 0.02)],  # all: the camera is wrong
+        [(0.5, -0.15, 0.02), (0.56, 0.0, 0.2)],  # in the air
+        [(0.5, -0.15, 0.02), (0.56, 0.0, 0.02), (0.56, 0.0, 0.065)],  # a tower
+        [(0.5, -0.15, 0.02), (0.53, 0.0, 0.02)],  # near enough
+    ],
+)
+def test_what_is_no_single_block_beside_them_is_taken_to_be_on_the_nearest_place(
+    centres: list[tuple[float, float, float]],
+) -> None:
+    assert not any(place.aside for place in stand_at(*centres).places)
+
+
 @pytest.mark.parametrize(("places", "known"), [((), True), (PLACES, False)])
 def test_without_places_or_camera_stacks_are_those_seen_from_the_left(
     places: tuple[tuple[float, float, float], ...], known: bool

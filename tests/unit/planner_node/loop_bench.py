@@ -22,6 +22,7 @@ from planner_node.loop import (
     Sighting,
     Stage,
 )
+from planner_node.loop.plan_watch import PlanSight
 from planner_node.settings import Settings
 from scene_graph import (
     ONE_ROW,
@@ -111,6 +112,7 @@ class LoopBench:
         self.homes: list[Way] = []
         self.plans: list[Plan] = []
         self.stops: list[str] = []
+        self.sights: list[tuple[str, PlanSight]] = []
         self.audience = 1
         self.told: list[Progress] = []
         self.cancel_at: Callable[[Progress], bool] = lambda _: False
@@ -193,6 +195,9 @@ class LoopBench:
         if plan_id.startswith("home-") and not self.deaf:
             way = self.homes.pop(0) if self.homes else go_home
             self._running = (plan_id, way(self))
+
+    def publish_sight(self, plan_id: str, sight: PlanSight) -> None:
+        self.sights.append((plan_id, sight))
 
     def subscribers(self) -> int:
         return self.audience

@@ -12,6 +12,7 @@ from tamp_runtime.motion_report import ArmPlace, MotionReport, MotionState
 from planner_node.errors import MotionBusyError, MotionSilentError
 from planner_node.goals import complete_goal
 from planner_node.loop import Clock, MotionLink, Plan, plan_for, scene_in
+from planner_node.loop.plan_watch import PlanSight, Sight
 from planner_node.search import make_plan
 from planner_node.settings import Settings
 
@@ -28,11 +29,15 @@ class Linked:
         self.settings = Settings(motion_accept_timeout=20.0, motion_silence_timeout=10.0)
         self.published: list[Plan] = []
         self.stopped: list[str] = []
+        self.sights: list[tuple[str, PlanSight]] = []
         self.audience = 1
         self.link = MotionLink(self.settings, self, self.clock.ros_now, self.clock)
 
     def publish(self, plan: Plan) -> None:
         self.published.append(plan)
+
+    def publish_sight(self, plan_id: str, sight: PlanSight) -> None:
+        self.sights.append((plan_id, sight))
 
     def publish_stop(self, plan_id: str) -> None:
         self.stopped.append(plan_id)
@@ -331,3 +336,12 @@ def test_who_follows_a_plan_looks_at_other_news_as_soon_as_he_is_woken() -> None
     linked.link.wake()
     follower.join(60.0)
     assert ended == [None]
+
+
+def test_what_is_seen_is_told_of_the_plan_that_is_followed() -> None:
+    linked, sight = Linked(), PlanSight(SECOND, 0, Sight.SEEN)
+    linked.link.tell_sight(sight)
+    assert linked.sights == []
+    plan_id = linked.start()
+    linked.link.tell_sight(sight)
+    assert linked.sights == [(plan_id, sight)]

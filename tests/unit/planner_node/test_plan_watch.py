@@ -14,7 +14,8 @@ from posed_scenes import FRAME, SECOND, Instant, Point, centre, frame, instants,
 from tamp_runtime.motion_report import MotionReport, MotionState
 
 from planner_node.loop import Plan, Sighting
-from planner_node.loop.plan_watch import PlanWatch
+from planner_node.loop.expectation import NUDGED
+from planner_node.loop.plan_watch import PlanSight, PlanWatch, Sight
 from scene_graph import GraphStatus, Move, Stacks, all_moves
 
 NAMES = ("red_box", "green_box", "blue_box", "yellow_box", "cyan_box")
@@ -55,6 +56,62 @@ def test_frames_as_predicted_never_contradict_at_whatever_phase(plan: Plan, late
     watch = PlanWatch(plan)
     watch_all(watch, plan, late * FRAME)
     assert watch.contradiction == ""
+
+
+@given(plans(), st.integers(0, 3))
+def test_of_every_frame_it_is_told_whether_the_next_block_is_where_it_is_to_be_taken(
+    plan: Plan, late: int
+) -> None:
+    watch, begun = PlanWatch(plan), 0
+    reports: list[MotionReport] = []
+    for instant in instants(plan):
+        if instant.begins:
+            reports.append(instant.report(plan, late * FRAME))
+        while reports and reports[0].stamp <= instant.stamp:
+            watch.hear(reports.pop(0))
+            begun = instant.stamp
+        watch.see(instant.frame())
+        # Just after a step has begun the block may still be in the hand.
+        settled = not reports and instant.stamp > begun + 3 * FRAME
+        if settled and not instant.step % 2 and instant.step < 2 * len(plan.moves):
+            assert watch.sight == PlanSight(instant.stamp, instant.step // 2, Sight.SEEN)
+
+
+@given(plans(), st.floats(0.016, 0.1), st.floats(0.0, math.tau), st.floats(0.0, 1.0))
+def test_a_block_that_is_not_where_it_is_to_be_taken_is_never_said_to_be_there(
+    plan: Plan, away: float, angle: float, visible: float
+) -> None:
+    """Unless it is told where it is."""
+    watch, name = PlanWatch(plan, patience=99), plan.blocks[0]
+    for instant in instants(plan):
+        if instant.step:
+            break
+        if instant.begins:
+            watch.hear(instant.report(plan))
+        x, y, z = standing(instant, name)
+        there = (x + away * math.cos(angle), y + away * math.sin(angle), z)
+        assert not watch.see(instant.frame({name: there}, visible=visible))
+        assert watch.sight is not None
+        if watch.sight.sight is Sight.SEEN:
+            assert [item.position_world for item in watch.sight.moved] == [there]
+            assert away <= NUDGED
+
+
+def test_what_nothing_can_be_made_of_and_what_may_contradict_the_plan_is_doubtful() -> None:
+    _, watch, course = course_of(2)
+    assert watch_sees(watch, course[0].frame()) is Sight.SEEN
+    nothing = {name: None for name in NAMES}
+    assert watch_sees(watch, course[1].frame(nothing)) is Sight.DOUBTFUL
+    x, y, z = centre(1, 0)
+    assert watch_sees(watch, course[2].frame({"green_box": (x + 0.018, y, z)})) is Sight.DOUBTFUL
+    hidden: dict[str, Any] = {"moved": {"red_box": None}, "hidden": (1.0, 1.0, 1.0)}
+    assert watch_sees(watch, course[3].frame(**hidden)) is Sight.HIDDEN
+    assert watch_sees(watch, course[4].frame()) is Sight.SEEN
+
+
+def watch_sees(watch: PlanWatch, seen: Sighting) -> Sight | None:
+    assert not watch.see(seen)
+    return watch.sight.sight if watch.sight else None
 
 
 @given(plans(), st.integers(0, 3), st.floats(0.0, 0.0105), st.floats(0.0, math.tau))
@@ -106,6 +163,9 @@ def test_any_block_that_is_displaced_in_the_view_is_noticed(
         if item.begins:
             watch.hear(item.report(plan))
         watch.see(item.frame({name: there}))
+    if watch.nudged:  # it stands there as well
+        assert watch.nudged.keys() == {name} and max(watch.nudged.values()) <= 1.1 * NUDGED
+        return
     assert watch.contradiction.startswith(f"{name} was expected on ")
     assert ";" not in watch.contradiction
 
@@ -144,12 +204,38 @@ def test_two_blocks_that_changed_places_are_told_by_where_they_are_seen() -> Non
 
 def test_one_frame_is_enough_that_perception_is_sure_of() -> None:
     _, watch, course = course_of(0)
-    moved = {"green_box": (0.53, 0.02, 0.0225)}
+    moved = {"green_box": (0.55, 0.02, 0.0225)}
     assert watch.see(course[0].frame(moved, status=GraphStatus.CONFIDENT, hidden=(0.0,) * 3))
     assert watch.contradiction == (
-        "green_box was expected on stack1 and is seen 36 mm beside where it was to be "
+        "green_box was expected on stack1 and is seen 54 mm beside where it was to be "
         "since move 1 of 3"
     )
+
+
+@pytest.mark.parametrize("step", [0, 1, 2])
+def test_a_block_that_was_moved_a_little_is_told_once_it_rests(step: int) -> None:
+    _, watch, course = course_of(step)
+    x, y, z = centre(1, 0)
+    for number, item in enumerate(course[4:8]):  # it still slides
+        assert not watch.see(item.frame({"green_box": (x + 0.016 + 0.006 * number, y, z)}))
+        assert watch.sight is not None and not watch.sight.moved
+        assert watch.sight.sight is not Sight.SEEN
+    there = (x + 0.04, y, z)
+    for item in course[8:]:
+        assert not watch.see(item.frame({"green_box": there}))
+        told = watch.sight
+    assert told is not None
+    assert [(item.name, item.position_world) for item in told.moved] == [("green_box", there)]
+    assert told.sight is (Sight.HIDDEN if step % 2 else Sight.SEEN)
+    assert watch.nudged == {"green_box": pytest.approx(0.04)}
+
+
+def test_a_block_that_the_plan_has_moved_already_is_not_to_be_moved_any_more() -> None:
+    _, watch, course = course_of(2)
+    x, y, z = centre(2, 0)
+    for item in course[6:8]:
+        watch.see(item.frame({"blue_box": (x + 0.04, y, z)}))
+    assert watch.contradiction.startswith("blue_box was expected on stack2")
 
 
 def test_a_single_frame_is_no_contradiction_that_is_not_plain() -> None:
@@ -288,7 +374,7 @@ def test_the_block_that_is_picked_is_watched_until_it_is_taken(step: int) -> Non
     name = plan.blocks[step // 2]
     for item in course[6:10]:
         x, y, z = standing(item, name)
-        watch.see(item.frame({name: (x + 0.03, y, z)}))
+        watch.see(item.frame({name: (x + 0.06, y, z)}))
     assert watch.contradiction.startswith(f"{name} was expected on ")
 
 

@@ -13,6 +13,7 @@ from posed_scenes import Point, centre, frame
 from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
 
 from planner_node.loop import Outcome, Plan, Status
+from planner_node.loop.plan_watch import Sight
 from scene_graph import GraphStatus, Stacks, apply_move
 
 Happening = Callable[["WatchBench"], None]
@@ -122,6 +123,9 @@ def test_a_task_that_nobody_disturbs_is_not_stopped(verify: str) -> None:
     assert (outcome.moves_planned, outcome.moves_executed) == (3, 3)
     assert bench.stacks == REACHED
     assert bench.stops == []
+    assert all(plan.watched == (verify == "watch") for plan in bench.plans)
+    told = {sight.move for _, sight in bench.sights if sight.sight is Sight.SEEN}
+    assert told == ({0, 1, 2} if verify == "watch" else set())
 
 
 def test_blocks_that_change_places_stop_the_motion_and_are_planned_for_anew() -> None:
@@ -198,9 +202,11 @@ def test_a_block_that_moved_a_little_is_taken_from_where_it_is() -> None:
 
     bench = WatchBench(phase_by_phase((0, "pick"), nudged), phase_by_phase(), verify="watch")
     outcome = achieve(bench)
-    assert (outcome.status, outcome.replans) == (Status.SUCCESS, 1)
-    x, y, z = bench.plans[1].scene.graph.object("green_box").position_world
-    assert (x, y, z) == pytest.approx((0.52, 0.0, 0.0225))
+    assert (outcome.status, outcome.replans, bench.stops) == (Status.SUCCESS, 0, [])
+    assert "green_box was moved by 20 mm, and the way corrected" in outcome.message
+    told = [item for _, sight in bench.sights for item in sight.moved]
+    assert {item.name for item in told} == {"green_box"}
+    assert told[-1].position_world == pytest.approx((0.52, 0.0, 0.0225))
 
 
 def test_replans_for_what_is_seen_are_bounded() -> None:

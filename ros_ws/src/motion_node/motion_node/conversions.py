@@ -8,15 +8,21 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 from sensor_msgs.msg import JointState
+from tamp_interfaces.msg import PlanSighting as PlanSightingMsg
 from tamp_interfaces.msg import SymbolicPlan
-from tamp_runtime.messages.scene_graph import graph_from_message, moves_from_messages
-from tamp_runtime.messages.stamps import duration_from_seconds, stamp_from_nanoseconds
+from tamp_runtime.messages.scene_graph import (
+    graph_from_message,
+    moves_from_messages,
+    object_from_message,
+)
+from tamp_runtime.messages.stamps import duration_from_seconds, seconds, stamp_from_nanoseconds
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
 
 from scene_graph import rotation_from_quaternion
 
 from .errors import InvalidPlanError, JointStateError
+from .execution.last_look import PlanSighting, Sight
 from .execution.plan import Plan
 from .obstacles import (
     MOST,
@@ -46,7 +52,23 @@ def plan_from_message(message: SymbolicPlan) -> Plan:
         moves=moves_from_messages(message.moves),
         object_names=tuple(move.object_name for move in message.moves),
         explain=message.explain,
+        watched=message.watched,
         frame=message.initial.header.frame_id or message.header.frame_id,
+    )
+
+
+def sighting_from_message(message: PlanSightingMsg) -> PlanSighting:
+    """What the planner sees of a plan that is watched.
+
+    Raises:
+        ValueError: if it is of a kind that is not known.
+    """
+    return PlanSighting(
+        message.plan_id,
+        seconds(message.header.stamp),
+        message.move,
+        Sight(message.sight),
+        tuple(object_from_message(item) for item in message.moved),
     )
 
 

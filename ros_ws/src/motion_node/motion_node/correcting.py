@@ -42,16 +42,18 @@ def corrected(
     graph: SceneGraph,
     moves: Sequence[Move],
     to_next_switch: bool = False,
+    choices: Sequence[Choice] = (),
 ) -> Motion:
     """The rest of a motion for a scene in which blocks or places stand a little elsewhere.
 
     Args:
-        motion: what is being carried out.
+        motion: what is being carried out; it may have been corrected before.
         at: the time of its trajectory from which on the correction counts [s].
         graph: the scene before the first of the moves, with what has not been moved yet where it
             is now.
         moves: those of the motion.
         to_next_switch: only as far as the next block is taken or put down.
+        choices: how the blocks are taken and put down, one a move; none: as in the motion.
 
     Returns:
         A motion whose trajectory begins at ``at`` with the arm's position and velocity there.
@@ -66,9 +68,11 @@ def corrected(
     if interval.gripping:
         raise _error(interval.phase, "time before the fingers move")
     gripper, own = planner.arm.gripper, settings.phases
-    phases = expand(scene, moves, gripper, own, settings.squeeze, choices=_choices(motion))
-    stop = index + 1 if to_next_switch else len(phases)
-    left = [_from_here(phases[index]), *phases[index + 1 : stop]]
+    choices = choices or choices_of(motion)
+    phases = expand(scene, moves, gripper, own, settings.squeeze, choices=choices)
+    done = len(phases) - len(motion.phases)  # before it was corrected the last time
+    stop = index + 1 if to_next_switch else len(motion.phases)
+    left = [_from_here(phases[done + index]), *phases[done + index + 1 : done + stop]]
     positions, rates = motion.trajectory.sample(at)
     clear = Clearances(settings.path.margin, motion.floor)
     keyframes, problem = planner.prepare(len(scene.stacks))
@@ -117,7 +121,7 @@ def _from_here(phase: Phase) -> Phase:
     return replace(phase, start=None)
 
 
-def _choices(motion: Motion) -> list[Choice]:
+def choices_of(motion: Motion) -> list[Choice]:
     """How the blocks of a motion are taken and put down."""
     found = []
     for phase in motion.phases:

@@ -17,14 +17,14 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
-from tamp_interfaces.msg import MotionStatus, SymbolicPlan
+from tamp_interfaces.msg import MotionStatus, PlanSighting, SymbolicPlan
 from tamp_runtime.messages.motion_status import report_to_message
 from tamp_runtime.messages.stamps import seconds
 from tamp_runtime.motion_report import MotionReport, MotionState
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.presence import Presence
-from tamp_runtime.qos import LATCHED, RELIABLE, SENSOR_DATA, STATUS
+from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA, STATUS
 from tamp_runtime.stream_thread import StreamThread
 from trajectory_msgs.msg import JointTrajectory
 from visualization_msgs.msg import MarkerArray
@@ -34,14 +34,17 @@ from .conversions import (
     joint_positions,
     obstacles_from_markers,
     plan_from_message,
+    sighting_from_message,
     trajectory_to_message,
     trajectory_to_two_messages,
 )
+from .correcting import choices_of, corrected
 from .errors import InfeasibleError, JointStateError, MotionError
 from .execution.arm_state import ArmState, ArmStateBox
 from .execution.condition import Condition
 from .execution.executive import Executive
 from .execution.follow import Follower
+from .execution.last_look import Sightings
 from .execution.plan import Plan
 from .execution.settings import ExecutionSettings
 from .execution.worker import PlanWorker
@@ -70,6 +73,7 @@ class MotionNode(Node):
         symbolic_plan (tamp_interfaces/SymbolicPlan, latched): the moves to carry out; without
             moves, a request to stop, or to bring home an arm that no plan moves. Plans published
             before this node started are ignored.
+        plan_sighting (tamp_interfaces/PlanSighting): what is seen of a plan that is watched
         joint_states (sensor_msgs/JointState)
         robot_description (std_msgs/String, latched): URDF
         obstacles (visualization_msgs/MarkerArray, latched): what stands around besides blocks, as
@@ -98,7 +102,7 @@ class MotionNode(Node):
         self._arm = chosen_arm(self._values)
         self._around = Surroundings(read_obstacles(self._values["obstacles"]))
         self._planners = Planners(self._around)
-        self._states = ArmStateBox()
+        self._states, self._sightings = ArmStateBox(), Sightings()
         self._description = ""
         self._early: list[MarkerArray] = []
         self._hearing = threading.Lock()
@@ -128,6 +132,10 @@ class MotionNode(Node):
             self._check_frame,
             self._suggest,
             lambda plan, motion, at: self._planners.in_the_way(motion, plan.graph, at),
+            self._sightings,
+            lambda planner, plan, first, now, at, graph: corrected(
+                planner, now, at, graph, plan.moves, choices=choices_of(first)
+            ),
         )
         self._worker = PlanWorker(
             executive, condition, self._publish, self._on_defect, self._presence.conflict
@@ -148,6 +156,13 @@ class MotionNode(Node):
         with_info: Any = self._on_plan  # rclpy passes the message's times to a second argument
         self.create_subscription(
             SymbolicPlan, "symbolic_plan", with_info, LATCHED, callback_group=plans
+        )
+        self.create_subscription(
+            PlanSighting,
+            "plan_sighting",
+            lambda message: self._sightings.put(sighting_from_message(message)),
+            NEWEST,
+            callback_group=MutuallyExclusiveCallbackGroup(),
         )
         # The beat is in wall time: a planner shall hear of a node that waits for the clock, too.
         self.create_timer(

@@ -76,12 +76,14 @@ def build_graph(
 
 
 def _with_hidden_shares(standing: Standing, occlusion: Occlusion) -> tuple[Place, ...]:
-    if len(occlusion.shares) != len(standing.places):
+    known = len(occlusion.shares)
+    if known != sum(not place.aside for place in standing.places):
         return standing.places
-    return tuple(
+    seen = tuple(
         replace(place, hidden=share, seen_to=height)
         for place, share, height in zip(standing.places, occlusion.shares, occlusion.seen_to)
     )
+    return (*seen, *standing.places[known:])
 
 
 def _posed(item: SceneObject, pose: BlockPose) -> SceneObject:

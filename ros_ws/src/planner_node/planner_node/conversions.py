@@ -9,13 +9,14 @@ from typing import Any
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 from tamp_interfaces.action import AchieveGoal
+from tamp_interfaces.msg import PlanSighting, SymbolicPlan
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
-from tamp_interfaces.msg import SymbolicPlan
 from tamp_runtime.messages.motion_status import report_to_message
 from tamp_runtime.messages.scene_graph import (
     graph_from_message,
     graph_to_message,
     moves_to_messages,
+    object_to_message,
     relations_to_messages,
 )
 from tamp_runtime.messages.stamps import nanoseconds, stamp_from_nanoseconds
@@ -25,6 +26,7 @@ from scene_graph import ONE_ROW, GraphStatus, SceneGraph
 from .errors import GoalImageError, InvalidGoalError, NotConfidentError
 from .goals import ResolveGoal, complete_goal, goal_of_picture, parse_goal, resolve_goal
 from .loop import Outcome, Plan, Progress, Scene, Sighting, scene_in
+from .loop.plan_watch import PlanSight
 from .search.peers.read_plan import state_after
 
 #: Asks perception for the scene graph of an image and its segmentation.
@@ -63,12 +65,24 @@ def plan_to_message(plan: Plan) -> SymbolicPlan:
         moves=moves_to_messages(plan.moves, plan.states),
         goal=relations_to_messages(plan.goal.fulfilled_by(plan.states[-1])),
         explain=plan.explain,
+        watched=plan.watched,
     )
 
 
 def stop_to_message(plan_id: str, stamp: int) -> SymbolicPlan:
     """The request to stop a plan: its name without moves; ``stamp`` is the ROS time [ns]."""
     return SymbolicPlan(header=_header(stamp, ""), plan_id=plan_id)
+
+
+def sight_to_message(plan_id: str, sight: PlanSight) -> PlanSighting:
+    """What is seen of a plan that is watched."""
+    return PlanSighting(
+        header=_header(sight.stamp, ""),
+        plan_id=plan_id,
+        move=sight.move,
+        sight=int(sight.sight),
+        moved=[object_to_message(item) for item in sight.moved],
+    )
 
 
 def predicted_to_messages(plan: Plan) -> list[SceneGraphMsg]:

@@ -59,7 +59,7 @@ from .loop import (
     plan_in,
     uncover_in,
 )
-from .loop.account import in_the_view
+from .loop.account import besides, in_the_view
 from .parameters import PARAMETERS
 from .plan_publisher import PlanPublisher
 from .search import SearchResult
@@ -88,6 +88,8 @@ class PlannerNode(Node):
         symbolic_plan (tamp_interfaces/SymbolicPlan, latched): the plan to carry out; without moves:
             the plan to stop, or the way home. A plan that is not taken up by a motion node that
             reports to be idle is published again, under the same name.
+        plan_sighting (tamp_interfaces/PlanSighting): what is seen of a plan that is watched, before
+            the motion node takes a block.
         diagnostics (diagnostic_msgs/DiagnosticArray): that it lives.
 
     Services:
@@ -200,7 +202,8 @@ class PlannerNode(Node):
             return
         response.status = int(Status.SUCCESS)
         told = f"{len(plan.moves)} moves to '{goal}'"
-        response.message = "; ".join(filter(None, (told, found.note)))
+        fetched = (f"{sentence} and is fetched" for sentence in besides(scene))
+        response.message = "; ".join(filter(None, (told, *fetched, found.note)))
         if scene.hidden:
             wanted = f"'{request.goal}'" if request.goal else "the goal image"
             moves = "1 move" if len(plan.moves) == 1 else f"{len(plan.moves)} moves"
@@ -215,7 +218,7 @@ class PlannerNode(Node):
     def _plan_in(self, scene: Scene, resolve: ResolveGoal, given: str) -> tuple[Goal, SearchResult]:
         """A plan to the goal, one given, or where blocks hide others one that uncovers them."""
         if not scene.hidden:
-            goal = resolve(scene.stacks, scene.rows)
+            goal = resolve(scene.on_places, scene.rows)
             if given:
                 return goal, given_plan_in(scene, given, goal, self._settings)
             return goal, plan_in(scene, goal, self._settings, self._is_shut_down)

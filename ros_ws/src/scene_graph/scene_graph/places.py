@@ -31,6 +31,8 @@ class Place:
             of its index, as in one row.
         clear: for each place, how high a stack on this one may be without hiding anything of a
             block there from the camera [m]; empty: no stack hides another one.
+        aside: it is none, just where a block stands that is on none: it can be taken from here, and
+            nothing is put here. Such places come after all others.
     """
 
     index: int
@@ -40,6 +42,7 @@ class Place:
     row: int = 0
     column: int | None = None
     clear: tuple[float, ...] = field(default=(), compare=False)
+    aside: bool = False
 
 
 def base_name(index: int) -> str:

@@ -38,6 +38,7 @@ class MotionReason(IntEnum):
     INTERNAL_ERROR = 8
     CONFLICT = 9
     OBSTRUCTED = 10
+    UNSEEN = 11
 
 
 class ObstaclesHeard(IntEnum):

@@ -16,14 +16,19 @@ from typing import Any, Final
 
 from tamp_runtime.motion_report import SOMETHING, MotionReason, MotionReport, MotionState
 
+from scene_graph import SceneGraph
+
 from ..errors import CancelledError, InfeasibleError, MotionError
 from ..phases import HOME, PICK
 from ..planner import Motion
 from ..timing.trajectory import Trajectory
 from .arm_state import ArmState, ArmStates
 from .condition import REST_SECONDS, Condition
+from .corrections import Corrections
 from .errors import ClosedError, ExecutionError, findings
 from .follow import Follower
+from .last_look import LastLook, Sightings
+from .motion_run import MotionRun
 from .plan import Plan, Planner
 from .recovery import Recovered, Recovery
 from .settings import ExecutionSettings
@@ -31,6 +36,8 @@ from .settings import ExecutionSettings
 #: How long an arm that has arrived may take to come to rest before that is said [s].
 _SETTLING_SECONDS: Final = 3.0
 
+#: Planner, plan, its motion, what is under way, from which of its times on, scene -> the rest.
+CorrectFirst = Callable[[Any, Plan, Motion, Motion, float, SceneGraph], Motion]
 #: Plan, state of the arm, why the plan was refused, whether to stop looking -> words.
 Suggest = Callable[[Plan, ArmState, InfeasibleError, Callable[[], bool]], str]
 
@@ -49,6 +56,8 @@ class Executive:
         suggest: what would help a plan that was refused, in words; empty: nobody knows.
         in_the_way: what has come into the rest of a motion's way, given the plan and the motion's
             time; empty: nothing.
+        sightings: what is seen of plans that are watched.
+        correct: solves the rest of a motion anew for blocks that were moved; None: nothing does.
     """
 
     def __init__(
@@ -62,7 +71,10 @@ class Executive:
         check: Callable[[Plan], None] = lambda _plan: None,
         suggest: Suggest = lambda _plan, _state, _error, _stopped: "",
         in_the_way: Callable[[Plan, Motion, float], str] = lambda _plan, _motion, _time: "",
+        sightings: Sightings | None = None,
+        correct: CorrectFirst | None = None,
     ) -> None:
+        self._sightings, self._correct = sightings or Sightings(), correct
         self._suggest, self._in_the_way = suggest, in_the_way
         self._planner, self._arm, self._settings, self._check = planner, arm, settings, check
         self._follower, self._condition, self._conflict = follower, condition, conflict
@@ -173,18 +185,18 @@ class Executive:
     def _run(self, plan: Plan, motion: Motion, planner: Planner, stop: threading.Event) -> None:
         follower = self._follower
 
-        def on_progress(trajectory: Trajectory, at: float) -> None:
-            self._tell_progress(trajectory, at)
+        def on_progress(motion: Motion, at: float, before: float) -> None:
+            self._tell_progress(motion.trajectory, at, before)
             if found := self._in_the_way(plan, motion, at):
                 sentence = f"{found}; the arm was stopped"
                 raise ExecutionError(MotionReason.OBSTRUCTED, sentence, recoverable=True)
 
+        run = MotionRun(
+            *(motion, follower, self._arm, *self._watching(plan, motion, planner)),
+            *(on_progress, self._tell_standing, stop.is_set),
+        )
         try:
-            arrived = follower.follow(
-                motion.trajectory,
-                on_progress,
-                lambda: stop.is_set() and follower.empty_handed,
-            )
+            arrived = run.run()
         except ExecutionError as error:
             if not error.recoverable:
                 raise
@@ -192,7 +204,7 @@ class Executive:
                 if error.reason is MotionReason.OBSTRUCTED:
                     self._stop_moving()
                     planner = self._wait_for_planner()  # among the obstacles of now
-                recovered = self._recover(motion, planner, str(error))
+                recovered = self._recover(run.motion, planner, str(error))
             except ExecutionError as second:
                 raise ExecutionError(error.reason, f"{error}; {second}") from error
             raise ExecutionError(error.reason, f"{error}; {recovered.sentence}") from error
@@ -206,7 +218,7 @@ class Executive:
                 progress=1.0,
             )
             return
-        recovered = self._recover(motion, planner, "stopped on request")
+        recovered = self._recover(run.motion, planner, "stopped on request")
         sentence = (
             f"stopped on request after {self._report.moves_done} of {total} moves; "
             f"{recovered.sentence}"
@@ -214,6 +226,23 @@ class Executive:
         if recovered.held:
             raise ExecutionError(MotionReason.GRASP_LOST, sentence)
         self._tell(MotionState.CANCELLED, sentence)
+
+    def _watching(
+        self, plan: Plan, motion: Motion, planner: Planner
+    ) -> tuple[LastLook | None, Corrections | None]:
+        """What is seen of a plan that is watched, and what comes of it."""
+        if not plan.watched:
+            return None, None
+        look, solve = LastLook(self._sightings, plan.plan_id), self._correct
+
+        def correct(now: Motion, at: float, graph: SceneGraph) -> Motion:
+            assert solve is not None
+            return solve(planner, plan, motion, now, at, graph)
+
+        # Two controllers would have to go over to it at the same instant.
+        can = solve is not None and self._follower.settings.in_step is None
+        corrections = Corrections(plan, self._sightings, self._follower, correct if can else None)
+        return look, corrections
 
     def _recover(self, motion: Motion, planner: Planner, why: str) -> Recovered:
         """Brings the arm home in the middle of a plan."""
@@ -305,7 +334,10 @@ class Executive:
         message = f"{self._before}; {sentence}" if sentence else self._before
         self._tell(self._report.state, message)
 
-    def _tell_progress(self, trajectory: Trajectory, at: float) -> None:
+    def _tell_standing(self, sentence: str) -> None:
+        self._tell(MotionState.EXECUTING, sentence)
+
+    def _tell_progress(self, trajectory: Trajectory, at: float, elapsed: float) -> None:
         phase = trajectory.interval_at(at).phase
         before = self._report
         self._report = replace(
@@ -314,7 +346,7 @@ class Executive:
             moves_done=trajectory.moves_done(at),
             phase=phase.kind,
             object_name=phase.object_name,
-            progress=at / trajectory.duration,
+            progress=(elapsed + at) / (elapsed + trajectory.duration),
         )
         if (before.phase, before.move) != (self._report.phase, self._report.move):
             doing = {PICK: f"picking {phase.object_name}", HOME: "going home"}

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Final
 
@@ -26,6 +26,8 @@ from .settings import ExecutionSettings
 _FRESH_SECONDS: Final = 1.0
 #: Fingers that were told to close and have not moved by then are held apart [s].
 FEEL_SECONDS: Final = 3.0
+#: The least that is left of a trajectory that ends before a grasp [s].
+_SHORTEST_SECONDS: Final = 0.01
 #: What an arm does that has not been given a trajectory.
 _NOTHING: Final = Phase(HOME, 0, "", None, None, Tool(0.0, 0.0, 0.0), (), 0.0)
 
@@ -154,6 +156,7 @@ class Follower:
         trajectory: Trajectory,
         on_progress: Callable[[Trajectory, float], None] = lambda _trajectory, _time: None,
         stopped: Callable[[], bool] = lambda: False,
+        moving: bool = False,
     ) -> bool:
         """Sends a trajectory and watches it; True when the arm has arrived at its end.
 
@@ -161,6 +164,7 @@ class Follower:
             on_progress: told the trajectory's time after each joint state.
             stopped: polled after each joint state of an arm that has started; returns False at
                 once when it says so, with the trajectory still running.
+            moving: it replaces one that is under way, and begins as that goes on.
 
         Raises:
             ExecutionError: if it does not go as it should.
@@ -170,7 +174,7 @@ class Follower:
         # Not the state from which the motion was optimised: that took a while.
         state = self._newest_if_fresh() or patience.wait(self._arm.newest())
         away, _ = state.positions.furthest(trajectory.positions[0])
-        if away > self.START_TOLERANCE:
+        if away > self.START_TOLERANCE and not moving:
             raise ExecutionError(
                 MotionReason.TRACKING_LOST,
                 "the arm has moved while its motion was optimised; let it rest, and ask again",
@@ -265,6 +269,56 @@ class Follower:
                 )
             state = patience.wait(state)
         return state
+
+    def stand_before(self, grasp: Interval) -> None:
+        """Goes on to where the fingers are to close, and stands there; they are open.
+
+        Args:
+            grasp: of the running trajectory, while they close or before.
+
+        Raises:
+            ExecutionError: if the arm does not come there, or joint states stay out.
+        """
+        assert self._trajectory is not None
+        if self.interval.gripping:
+            self.brake()  # which opens them again
+            return
+        begin = min(self.time + self.LEAD, grasp.start - _SHORTEST_SECONDS)
+        self.go_along(self._trajectory.cut(begin, grasp.start))
+
+    def go_along(self, way: Trajectory) -> None:
+        """Goes a short way that ends at rest, and stands there.
+
+        Raises:
+            ExecutionError: if the arm does not come there, or joint states stay out.
+        """
+        self._trajectory, self.under_way, self.time = way, False, 0.0
+        self._send(way, None)
+        patience = self._patience()
+        first = state = patience.wait(self._arm.newest())
+        while (
+            state.stamp - first.stamp < way.duration
+            or state.positions.furthest(way.positions[-1])[0] > self.settings.monitor.goal_tolerance
+        ):
+            if state.stamp - first.stamp > way.duration + 5.0:
+                raise ExecutionError(
+                    MotionReason.TRACKING_LOST,
+                    "the arm does not come to where it is to take the next block",
+                    recoverable=True,
+                )
+            state = patience.wait(state)
+
+    def states(self) -> Iterator[ArmState]:
+        """The newest state, and then each that comes.
+
+        Raises:
+            ExecutionError: if joint states stay out.
+        """
+        patience, state = self._patience(), self._arm.newest()
+        while True:
+            if state is not None:
+                yield state
+            state = patience.wait(state)
 
     def feel(self, state: ArmState, by: float = 0.006) -> bool:
         """Whether something resists when the fingers close a little more; then it presses on.

@@ -20,6 +20,7 @@ class Plan:
     Attributes:
         frame: the frame of all its poses; empty: it does not say.
         explain: nothing is to move; it is only asked whether it could, and if not, what would help.
+        watched: fingers close only on what was seen where they take it, see :mod:`.last_look`.
     """
 
     plan_id: str
@@ -28,6 +29,7 @@ class Plan:
     object_names: tuple[str, ...]
     frame: str = ""
     explain: bool = False
+    watched: bool = False
 
 
 class Planner(WaysHome, Protocol):

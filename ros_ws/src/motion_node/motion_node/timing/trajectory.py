@@ -100,6 +100,22 @@ class Trajectory:
         )
         return Trajectory(times - start, positions, velocities, intervals)
 
+    def back(self, start: float, end: float, step: float = 0.02) -> Trajectory:
+        """From one time of it back to an earlier one, from rest to rest, at half its speed.
+
+        The path is the same, which is known to be free: s(t) = start + (end - start) (3u² - 2u³),
+        u = t / T, whose speed is three quarters of the path's at most with T = 2 |end - start|.
+        """
+        seconds = max(2.0 * abs(end - start), step)
+        times = np.linspace(0.0, seconds, max(2, int(np.ceil(seconds / step))) + 1)
+        u = times / seconds
+        along = start + (end - start) * (3 - 2 * u) * u**2
+        rate = ((end - start) / seconds * 6 * u * (1 - u))[:, None]
+        positions, speeds = self.sample(along)
+        velocities = JointValues(speeds.arm * rate, speeds.fingers * rate)
+        interval = Interval(0.0, seconds, self.interval_at(min(start, end)).phase, False)
+        return Trajectory(times, positions, velocities, (interval,))
+
     def brake(self, now: float, lead: float, seconds: float, step: float = 0.02) -> Trajectory:
         """Comes to rest along the same path, which is known to be free, shortly after a time.
 

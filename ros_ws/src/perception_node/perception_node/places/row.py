@@ -32,6 +32,12 @@ from .standing import Places, Points, Standing
 NOISE_WIDTH: Final = 0.016
 #: A count must hold on this part of the image's rows, in a row or not.
 NOISE_ROWS: Final = 0.016
+#: One block that is further than this from the middle of every place stands on none [m]; a centre
+#: that is no higher than that over the table is of a block on it [m].
+BESIDE: Final = 0.036
+LOW: Final = 0.04
+#: ... if the others stand so near to theirs, half of them or more: else it is the camera [m].
+NEAR: Final = 0.018
 #: Blocks whose axes are nearer than this, seen from above, are of one stack, unless places are [m].
 JOINED: Final = 0.04
 
@@ -106,17 +112,46 @@ class RowOfPlaces:
         for group in range(count):
             members = np.flatnonzero(group_of == group)
             stacks.append(tuple(int(i) for i in members[np.argsort(centres_world[members, 2])]))
-        if count > len(feet):
-            return self._without_places(tuple(stacks), too_many(count, len(feet)))
+        beside = self._beside(stacks, centres_world)
+        stacks = [stack for stack in stacks if stack not in beside]
+        if len(stacks) > len(feet):
+            return self._without_places((*stacks, *beside), too_many(count, len(feet)))
         middles = np.array([centres_world[list(stack), :2].mean(axis=0) for stack in stacks])
         squares = ((middles[:, None] - feet[None, :, :2]) ** 2).sum(axis=-1)
         rows, places = linear_sum_assignment(squares)
         by_place = [stacks[row] for row in rows]
+        on_places = with_empty_places(by_place, [int(place) for place in places], len(feet))
+        more = [
+            Place(
+                len(feet) + number,
+                (float(centres_world[item, 0]), float(centres_world[item, 1]), float(feet[0, 2])),
+                aside=True,
+            )
+            for number, (item,) in enumerate(beside)
+        ]
+        all_places = (*self.places, *more)
         return Standing(
-            with_empty_places(by_place, [int(place) for place in places], len(feet)),
-            tuple(place.position_world[2] for place in self.places),
-            self.places,
+            (*on_places, *beside),
+            tuple(place.position_world[2] for place in all_places),
+            all_places,
         )
+
+    def _beside(
+        self, stacks: Sequence[tuple[int, ...]], centres_world: NDArray[np.float64]
+    ) -> list[tuple[int, ...]]:
+        """The single blocks that stand on the table beside the places, while most stand on them."""
+        if any(place.row for place in self.places):
+            return []  # what they may hide is not known
+        feet = self._positions()
+        middles = np.array([centres_world[list(stack), :2].mean(axis=0) for stack in stacks])
+        away = np.linalg.norm(middles[:, None] - feet[None, :, :2], axis=-1).min(axis=1)
+        heights = centres_world[[stack[0] for stack in stacks], 2] - feet[0, 2]
+        single = np.array([len(stack) == 1 for stack in stacks])
+        beside = single & (away > BESIDE) & (heights <= LOW)
+        if 2 * np.count_nonzero(away <= NEAR) < len(stacks):
+            return []
+        order = np.argsort(-middles[:, 1], kind="stable")
+        return [stacks[int(index)] for index in order if beside[index]]
 
     def in_front(
         self, points_world: NDArray[np.float64], camera: PinholeCamera, margin: float

@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+import math
+from itertools import zip_longest
 from typing import Final
 
 from tamp_runtime.motion_report import SOMETHING, ArmPlace, MotionReport, MotionState
 
-from scene_graph import Stacks, format_stacks, is_hidden
+from scene_graph import Stacks, base_name, format_stacks, is_hidden
 
 from .execution import STALE_SECONDS
 from .plan import Plan
@@ -70,7 +72,7 @@ def describe_difference(plan: Plan, end: MotionReport, seen: Scene) -> str:
     done = min(end.moves_done, len(plan.moves))
     complete = end.state == MotionState.SUCCEEDED
     expected = [plan.states[-1]] if complete else list(plan.states[done : done + 2])
-    if any(_agree(seen.stacks, stacks) for stacks in expected):
+    if any(agree(seen.stacks, stacks) for stacks in expected):
         return ""
     told = (
         "the motion node reports every move carried out"
@@ -83,11 +85,24 @@ def describe_difference(plan: Plan, end: MotionReport, seen: Scene) -> str:
     )
 
 
-def _agree(seen: Stacks, expected: Stacks) -> bool:
+def agree(seen: Stacks, expected: Stacks) -> bool:
     """Whether all is as expected; of what was hidden before nothing was."""
-    return len(seen) == len(expected) and all(
-        here == there or any(map(is_hidden, there)) for here, there in zip(seen, expected)
+    return all(
+        here == there or any(map(is_hidden, there))
+        for here, there in zip_longest(seen, expected, fillvalue=())
     )
+
+
+def besides(scene: Scene) -> list[str]:
+    """A sentence about each block that stands beside the places."""
+    places = [place for place in scene.graph.places if not place.aside]
+    sentences = []
+    for name in scene.aside:
+        here = scene.graph.object(name).position_world[:2]
+        away, base = min((math.dist(here, place.position_world[:2]), base_name(place.index))
+                         for place in places)  # fmt: skip
+        sentences.append(f"{name} stood {1000 * away:.0f} mm beside the centre of {base}")
+    return sentences
 
 
 def _aside(seen: Stacks, predicted: Stacks) -> str:

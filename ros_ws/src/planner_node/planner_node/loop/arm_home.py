@@ -29,6 +29,7 @@ PASSING: Final = (
     MotionReason.TIMEOUT,
     MotionReason.NO_JOINT_STATES,
     MotionReason.OBSTRUCTED,
+    MotionReason.UNSEEN,
 )
 #: A motion node that lives says so once a second; its first word is waited for so long [s].
 FIRST_REPORT_SECONDS: Final = 2.0

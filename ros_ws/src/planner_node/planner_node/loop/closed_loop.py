@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
-from tamp_runtime.motion_report import MotionReport
+from tamp_runtime.motion_report import MotionReport, MotionState
 
 from scene_graph import format_stacks
 
@@ -26,7 +26,7 @@ from ..errors import (
 from ..goals.goal import Goal, ResolveGoal
 from ..search import SearchResult
 from ..settings import EACH_MOVE, WATCH, Settings
-from .account import account_for, describe_difference, in_the_view
+from .account import account_for, agree, besides, describe_difference, in_the_view
 from .arm_home import ArmHome
 from .clock import Clock
 from .motion_link import MotionLink
@@ -131,7 +131,7 @@ class ClosedLoop:
         self._note(initial=scene)
         scene, goal = self._uncovered(scene, resolve)
         plans = 0
-        while not goal.holds(scene.stacks):
+        while scene.aside or not goal.holds(scene.stacks):
             if plans and not self._possible.just_refused:
                 self._count_replan(scene)
             try:
@@ -189,14 +189,14 @@ class ClosedLoop:
             attempts += 1
             plan = plan_for(scene, goal or Goal(()), found, self._scenes.now())
             scene = self._carry_out(plan, plan.goal)
-        return scene, resolve(scene.stacks, scene.rows)
+        return scene, resolve(scene.on_places, scene.rows)
 
     def _work_off(self, scene: Scene, goal: Goal, found: SearchResult) -> Scene:
         """Has what was found carried out, all at once or with a look after each move."""
         each = self._settings.verify == EACH_MOVE
         for part in found.move_by_move() if each else (found,):
             scene = self._carry_out(plan_for(scene, goal, part, self._scenes.now()), goal)
-            if scene.stacks != part.states[-1] or goal.holds(scene.stacks):
+            if not agree(scene.stacks, part.states[-1]) or goal.holds(scene.stacks):
                 break
         return scene
 
@@ -233,6 +233,8 @@ class ClosedLoop:
                 raise
             self._because(str(error))
             raise failure from error
+        if watch is not None and end.report.state == MotionState.SUCCEEDED:
+            self._remarks += watch.told_of_moved
         if end.contradicted and watch is not None:
             self._remarks.append(watch.contradiction)
             if watch.is_as_predicted(scene, end.report.moves_done):
@@ -303,6 +305,9 @@ class ClosedLoop:
         self._tell(Stage.PLANNING, f"searching from {format_stacks(scene.stacks)} to '{goal}'")
         with self._timed("plan_seconds"):
             found = self._possible.plan(scene, goal)
+        for sentence in besides(scene):
+            self._tell(Stage.PLANNING, f"{sentence}; it is fetched")
+            self._remarks.append(f"{sentence}, and was fetched")
         if found.note:
             self._tell(Stage.PLANNING, found.note)
             self._remarks.append(f"the plan was {found.note}")

@@ -15,8 +15,10 @@ from enum import Enum
 from typing import Final
 
 from scene_graph import (
+    UP,
     GraphStatus,
     Place,
+    Relation,
     SceneGraph,
     SceneObject,
     hidden_place,
@@ -29,6 +31,8 @@ from .scene import Sighting
 
 #: Of a block whose outline is hidden further, nothing is believed.
 MIN_VISIBLE: Final = 0.3
+#: A block that was moved has come to rest when it is seen twice as near as this [m].
+STILL: Final = 0.004
 #: What is seen this near to the middle of a place, or of a block, from above, is over it [m].
 OVER: Final = 0.036
 #: A place that is hidden further may hide a block.
@@ -41,6 +45,7 @@ class Kind(Enum):
     ELSEWHERE = "elsewhere"
     UNSEEN = "unseen"
     FOREIGN = "foreign"
+    NUDGED = "nudged"
 
 
 #: A part of the arm can look like a block, though not in so many frames at one point.
@@ -76,7 +81,8 @@ class Finding:
         if self.kind != other.kind:
             return False
         here, there = self.position_world, other.position_world
-        return here is None or (there is not None and math.dist(here, there) <= RESTING_TOLERANCE)
+        most = STILL if self.kind is Kind.NUDGED else RESTING_TOLERANCE
+        return here is None or (there is not None and math.dist(here, there) <= most)
 
 
 @dataclass(frozen=True)
@@ -102,13 +108,27 @@ class Evidence:
 
     Attributes:
         expectation: where the blocks are to be, as far as it was learnt.
+        nudged: the blocks that were moved a little before the plan has moved them, as they are seen
+            now; that contradicts nothing.
     """
 
     def __init__(self, expectation: Expectation, patience: int = 1) -> None:
         self.expectation = expectation
+        self.nudged: dict[str, SceneObject] = {}
         self._patience = patience
         self._suspicions: dict[str, Suspicion] = {}
         self._fresh: set[str] = set()  # of the newest frame
+        self._in_place: set[str] = set()  # likewise
+
+    @property
+    def doubts(self) -> bool:
+        """Whether anything in the newest frame speaks against the plan, though not for certain."""
+        return any(self._suspicions[name].finding.frames < FOREIGN_FRAMES
+                   for name in self._fresh if name in self._suspicions)  # fmt: skip
+
+    def is_in_place(self, name: str) -> bool:
+        """Whether a block is seen in the newest frame where it is to rest."""
+        return name in self._in_place
 
     def weigh(self, sighting: Sighting, steps: range) -> tuple[Suspicion, ...]:
         """Takes a frame; returns what is certain by now, and what else more than one frame says.
@@ -119,9 +139,10 @@ class Evidence:
             steps: those of the plan that may have been under way, at least one.
         """
         graph = sighting.graph
+        self._fresh.clear()
+        self._in_place.clear()
         if not graph.objects:
             return ()
-        self._fresh.clear()
         # What is hidden there may be any block, and is none that is new.
         hidden = {hidden_place(item.name) for item in graph.objects}
         states = [self.expectation.at(step) for step in steps]
@@ -140,7 +161,7 @@ class Evidence:
                 continue
             self._weigh_block(name, seen.get(name), options, graph, about_to_rise, steps)
         unknown = {hidden_place(name) for name in states[0]}
-        visible = [place for place in graph.places if place.index not in unknown]
+        visible = [item for item in graph.places if item.index not in unknown and not item.aside]
         for name, item in seen.items():
             if name not in states[0] and all(item.size) and _over_a_place(item, visible):
                 frames = FOREIGN_FRAMES
@@ -184,7 +205,17 @@ class Evidence:
             if rest.holds(item.position_world):
                 self.expectation.learn(item, rest)
                 self._suspicions.pop(name, None)
+                self._in_place.add(name)
                 return
+        if self._is_nudged(item, options, graph):
+            finding = Finding(name, Kind.NUDGED, options[-1], item.position_world, 2)
+            if self._suspect(finding, steps).frames >= finding.frames:
+                del self._suspicions[name]
+                self._fresh.discard(name)
+                self._in_place.add(name)
+                self.nudged[name] = item
+                self.expectation.move(item)
+            return
         held = name == about_to_rise
         if held and _is_lifted(item, options[-1]):
             return
@@ -194,19 +225,28 @@ class Evidence:
         finding = Finding(name, Kind.ELSEWHERE, options[-1], item.position_world, 1 + doubt + held)
         self._suspect(finding, steps)
 
-    def _suspect(self, finding: Finding, steps: range) -> None:
+    def _is_nudged(self, item: SceneObject, options: tuple[Rest, ...], graph: SceneGraph) -> bool:
+        """Whether a block stands on what it stood on, a little aside, and the plan can take it."""
+        rest = options[-1]
+        stands = Relation(item.name, UP, rest.support) in graph.relations
+        near = all(option.nearly_holds(item.position_world) for option in options)
+        return stands and near and item.confidence >= PLAINLY
+
+    def _suspect(self, finding: Finding, steps: range) -> Suspicion:
         self._fresh.add(finding.name)
         before = self._suspicions.get(finding.name)
         if before is None or not finding.agrees_with(before.finding):
             self._suspicions[finding.name] = Suspicion(finding, 1, steps[-1])
         else:
             self._suspicions[finding.name] = Suspicion(finding, before.frames + 1, before.step)
+        return self._suspicions[finding.name]
 
     def _certain(self, status: GraphStatus) -> tuple[Suspicion, ...]:
         certain = [
             item
             for name, item in self._suspicions.items()
             if name in self._fresh
+            and item.finding.kind is not Kind.NUDGED
             and item.frames
             >= self._patience * (1 if status is GraphStatus.CONFIDENT else item.finding.frames)
         ]
@@ -225,7 +265,7 @@ def _is_at(item: SceneObject, rest: Rest) -> bool:
 def _is_on_something(item: SceneObject, graph: SceneGraph) -> bool:
     """Whether a block is seen to stand on a place or a block, and not in the air."""
     low = item.position_world[2] - 0.5 * item.size[2]
-    tops = [place.position_world[2] for place in graph.places]
+    tops = [place.position_world[2] for place in graph.places if not place.aside]
     tops += [
         other.position_world[2] + 0.5 * other.size[2]
         for other in graph.objects

@@ -15,6 +15,8 @@ from .plan import Plan
 PLACED_TOLERANCE: Final = 0.025
 #: One that was seen stands where it was seen, to this; an open hand takes it all the same [m].
 RESTING_TOLERANCE: Final = 0.015
+#: One that stands where it stood but for this has been moved a little, and is taken from there [m].
+NUDGED: Final = 0.05
 #: Of a height, which follows from the blocks beneath [m].
 HEIGHT_TOLERANCE: Final = 0.015
 
@@ -40,6 +42,12 @@ class Rest:
     tolerance: float
     height: float
     moves: int
+
+    def nearly_holds(self, position_world: Point) -> bool:
+        """Whether a block there has been moved a little, before the plan has moved it."""
+        dx, dy, dz = (a - b for a, b in zip(position_world, self.position_world))
+        away = (dx * dx + dy * dy) ** 0.5
+        return self.moves == 0 and away <= NUDGED and abs(dz) <= HEIGHT_TOLERANCE
 
     def holds(self, position_world: Point) -> bool:
         """Whether a block that is seen there is where it is to rest."""
@@ -86,6 +94,10 @@ class Expectation:
     def learn(self, item: SceneObject, rest: Rest) -> None:
         """A block is seen where it is to rest: from now on it is expected just there."""
         self._seen.setdefault((item.name, rest.moves), item.position_world)
+
+    def move(self, item: SceneObject) -> None:
+        """A block that the plan has not moved yet stands a little elsewhere from now on."""
+        self._seen[(item.name, 0)] = item.position_world
 
     def _rest(self, name: str, done: int, stack: int, support: str, beneath: Point) -> Rest:
         moves = self._plan.blocks[:done].count(name)

@@ -16,6 +16,7 @@ from ..settings import Settings
 from .clock import Clock
 from .execution import OVERTAKEN_NANOSECONDS, STALE_SECONDS, Execution, Foreign, state_of
 from .plan import Plan
+from .plan_watch import PlanSight
 from .report import NO_REPORT
 from .scene_watch import POLL_SECONDS
 
@@ -35,6 +36,9 @@ class PlanTopic(Protocol):
 
     def publish_stop(self, plan_id: str) -> None:
         """Asks the motion node to stop a plan and go home: its name without moves."""
+
+    def publish_sight(self, plan_id: str, sight: PlanSight) -> None:
+        """Tells the motion node what is seen of a plan that is watched."""
 
     def subscribers(self) -> int:
         """How many hear it."""
@@ -208,6 +212,13 @@ class MotionLink:
             if self._execution and self._execution.plan_id == plan_id:
                 self._execution.stopping = self._clock.now()
         self._plans.publish_stop(plan_id)
+
+    def tell_sight(self, sight: PlanSight) -> None:
+        """Tells what is seen of the plan that is followed."""
+        with self._changed:
+            plan_id = self._execution.plan_id if self._execution else ""
+        if plan_id:
+            self._plans.publish_sight(plan_id, sight)
 
     def forget(self) -> None:
         """Follows nothing any more; if it goes on, it counts like a plan of somebody else."""

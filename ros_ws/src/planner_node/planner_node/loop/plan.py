@@ -27,6 +27,7 @@ class Plan:
         moves: in order.
         states: the state before the first move and after each.
         predicted: the scene after each move: names, relations and places, no poses.
+        watched: the motion node is told what is seen, see :class:`.plan_watch.PlanSight`.
         explain: nothing is to move; it is only asked why it was refused, and what would help.
     """
 
@@ -38,6 +39,7 @@ class Plan:
     states: tuple[Stacks, ...]
     predicted: tuple[SceneGraph, ...]
     explain: bool = False
+    watched: bool = False
 
     @property
     def blocks(self) -> tuple[str, ...]:

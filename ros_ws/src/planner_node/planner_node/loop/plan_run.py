@@ -24,7 +24,7 @@ from .account import describe_arm, describe_step
 from .arm_home import PASSING
 from .motion_link import MotionLink
 from .plan import Plan
-from .plan_watch import PlanWatch
+from .plan_watch import PlanSight, PlanWatch
 from .report import Stage
 from .scene import Sighting
 from .teller import Teller
@@ -78,6 +78,7 @@ class PlanRun:
         self._newest = newest
         self._infeasible = False
         self._watch: PlanWatch | None = None
+        self._told: PlanSight | None = None
 
     def carry_out(self, plan: Plan, watch: PlanWatch | None = None) -> PlanEnd:
         """Hands a plan to the motion node and follows it to its end.
@@ -93,7 +94,8 @@ class PlanRun:
         moves = ", ".join(
             f"{block} to stack{move.target}" for block, move in zip(plan.blocks, plan.moves)
         )
-        self._watch = watch
+        self._watch, self._told = watch, None
+        plan = replace(plan, watched=watch is not None)
         self._teller.begin(plan)
         self._teller.tell(Stage.OPTIMISING, f"{len(plan.moves)} moves: {moves}")
         self._motion.start(plan)
@@ -162,7 +164,14 @@ class PlanRun:
 
     def _stopped_or_contradicted(self) -> bool:
         watch = self._watch
-        return self._stopped() or (watch is not None and watch.see(self._newest()))
+        if self._stopped() or watch is None:
+            return self._stopped()
+        contradicted = watch.see(self._newest())
+        sight = watch.sight
+        if sight is not None and sight != self._told:
+            self._motion.tell_sight(sight)
+        self._told = sight
+        return contradicted
 
     def _stop_short(self, plan: Plan, contradiction: str) -> PlanEnd:
         """Stops a plan that what is seen contradicts, and waits until the arm is home."""

@@ -4,16 +4,43 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from enum import IntEnum
 
 from tamp_runtime.motion_report import MotionReport
 
-from scene_graph import UP, SceneGraph
+from scene_graph import UP, SceneGraph, SceneObject, base_name
 
 from .evidence import Evidence, Finding, Suspicion
 from .expectation import Expectation
 from .plan import Plan
 from .scene import Scene, Sighting
 from .timeline import Timeline
+
+
+class Sight(IntEnum):
+    """What a frame shows of the block that is taken next, with the numbers of PlanSighting."""
+
+    SEEN = 0
+    HIDDEN = 1
+    DOUBTFUL = 2
+
+
+@dataclass(frozen=True)
+class PlanSight:
+    """What one frame shows of what a plan takes next.
+
+    Attributes:
+        stamp: when the frame was taken, in ROS time [ns].
+        move: index of the move whose block is taken next.
+        sight: of this block.
+        moved: blocks that were moved a little since the plan was made, as they are seen now.
+    """
+
+    stamp: int
+    move: int
+    sight: Sight
+    moved: tuple[SceneObject, ...] = ()
 
 
 class PlanWatch:
@@ -24,6 +51,8 @@ class PlanWatch:
 
     Attributes:
         contradiction: what was seen to happen, as a sentence; empty while all is as predicted.
+        sight: what the newest frame shows of what is taken next; None where that contradicts
+            the plan, or before any.
     """
 
     def __init__(self, plan: Plan, patience: int = 1) -> None:
@@ -32,6 +61,7 @@ class PlanWatch:
         self._evidence = Evidence(Expectation(plan), patience)
         self._newest = plan.scene.stamp
         self.contradiction = ""
+        self.sight: PlanSight | None = None
 
     def hear(self, report: MotionReport) -> None:
         """Takes a report of the motion node on the plan."""
@@ -43,11 +73,37 @@ class PlanWatch:
             return bool(self.contradiction)
         if sighting.stamp <= self._newest or self._timeline.off_course:
             return False
-        self._newest = sighting.stamp
+        self._newest, self.sight = sighting.stamp, None
         steps = self._timeline.steps_at(sighting.stamp)
         told = self._evidence.weigh(sighting, steps)
         self.contradiction = "; ".join(self._clause(item, sighting.graph) for item in told)
+        name = self._evidence.expectation.picked(steps[-1])
+        if not told:
+            sight, moved = self._sight_of(name, sighting), tuple(self._evidence.nudged.values())
+            self.sight = PlanSight(sighting.stamp, steps[-1] // 2, sight, moved)
         return bool(self.contradiction)
+
+    @property
+    def nudged(self) -> dict[str, float]:
+        """How far blocks were moved that were taken where they were then, by name [m]."""
+        before = self._plan.scene.graph
+        return {
+            name: math.dist(item.position_world, before.object(name).position_world)
+            for name, item in self._evidence.nudged.items()
+        }
+
+    @property
+    def told_of_moved(self) -> list[str]:
+        """A sentence about each of these blocks."""
+        return [f"{name} was moved by {1000 * away:.0f} mm, and the way corrected"
+                for name, away in self.nudged.items()]  # fmt: skip
+
+    def _sight_of(self, name: str, sighting: Sighting) -> Sight:
+        if not name:
+            return Sight.HIDDEN
+        if not sighting.graph.objects or self._evidence.doubts:
+            return Sight.DOUBTFUL
+        return Sight.SEEN if self._evidence.is_in_place(name) else Sight.HIDDEN
 
     def is_as_predicted(self, scene: Scene, moves_done: int) -> bool:
         """Whether a scene is as the plan predicts it after so many moves, to the last block."""
@@ -78,7 +134,8 @@ def _where(finding: Finding, graph: SceneGraph) -> str:
           (finding.name, UP)]  # fmt: skip
     if rest is None:
         return f"on {on[0]}" if on else _point(position)
-    if on and on[0] != rest.support:
+    spots = {base_name(place.index) for place in graph.places if place.aside}
+    if on and on[0] != rest.support and on[0] not in spots:
         return f"seen on {on[0]}"
     away = math.dist(position[:2], rest.position_world[:2])
     if away > rest.tolerance:

@@ -66,6 +66,19 @@ class Scene:
         return rows_of(self.graph.places)
 
     @property
+    def aside(self) -> tuple[str, ...]:
+        """The blocks that stand on the table beside the places, and are to be put on one."""
+        stands = zip(self.stacks, self.graph.places)
+        return tuple(name for stack, place in stands if place.aside for name in stack)
+
+    @property
+    def on_places(self) -> Stacks:
+        """The state as if blocks that stand beside the places stood on top of the first of them."""
+        count = sum(not place.aside for place in self.graph.places)
+        first, *others = self.stacks[:count]
+        return ((*first, *self.aside), *others)
+
+    @property
     def hidden(self) -> tuple[int, ...]:
         """The places of which it is not known what stands there, as blocks hide it."""
         return hidden_places(self.stacks)

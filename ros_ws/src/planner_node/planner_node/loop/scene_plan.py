@@ -4,10 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
-from scene_graph import NOT, Stacks
+from scene_graph import NOT, UP, Relation, Stacks, base_name
 
-from ..errors import AmbiguousObjectError, GoalImageError, UnknownObjectError
+from ..errors import (
+    AmbiguousObjectError,
+    GivenPlanError,
+    GoalImageError,
+    UnknownObjectError,
+)
 from ..goals.contradictions import check_contradictions
 from ..goals.goal import Goal, ResolveGoal
 from ..search import SearchResult
@@ -38,13 +44,40 @@ def plan_in(
     """
     return make_stable_plan(
         scene.stacks,
-        goal,
+        cleared_up(goal, scene),
         stability_in(scene, settings),
-        exclusions,
+        (*exclusions, *not_places(scene)),
         settings.max_expansions,
         cancelled,
         settings.search_algorithm,
     )
+
+
+def cleared_up(goal: Goal, scene: Scene) -> Goal:
+    """The goal, with all blocks on places."""
+    away = [
+        Relation(name, NOT + UP, base_name(place.index))
+        for stack, place in zip(scene.stacks, scene.graph.places)
+        if place.aside
+        for name in stack
+    ]
+    return replace(goal, relations=(*goal.relations, *away)) if away else goal
+
+
+def not_places(scene: Scene) -> list[Exclusion]:
+    """That nothing is put where blocks stand beside the places."""
+    beside = [
+        (stack, place)
+        for stack, place in zip(scene.stacks, scene.graph.places)
+        if place.aside and stack
+    ]
+    return [
+        Exclusion(name, target=place.index, onto=onto, told=False)
+        for stack, place in beside
+        for onto in ((), stack)
+        for names in scene.stacks
+        for name in names
+    ]
 
 
 def given_plan_in(scene: Scene, text: str, goal: Goal, settings: Settings) -> SearchResult:
@@ -53,7 +86,16 @@ def given_plan_in(scene: Scene, text: str, goal: Goal, settings: Settings) -> Se
     Raises:
         GivenPlanError: it does not hold; the message names the step.
     """
-    return checked_plan(text, scene.stacks, goal, stability_in(scene, settings))
+    found = checked_plan(text, scene.stacks, cleared_up(goal, scene), stability_in(scene, settings))
+    for step, move in enumerate(found.moves):
+        if scene.graph.places[move.target].aside:
+            where = base_name(move.target)
+            raise GivenPlanError(
+                f"step {step + 1} of the plan puts a block on {where}, which is no place: just "
+                f"where {scene.stacks[move.target][0]} stands beside the places",
+                step,
+            )
+    return found
 
 
 def uncover_in(

@@ -46,6 +46,7 @@ class Exclusion:
         target, onto: the stack it puts it on, and the blocks there before; None: any.
         state: the only arrangement that it is excluded in; None: any.
         reason: why, in words.
+        told: whether a sentence names it; else it goes without saying.
     """
 
     block: str
@@ -55,6 +56,7 @@ class Exclusion:
     onto: tuple[str, ...] = ()
     state: Stacks | None = None
     reason: str = ""
+    told: bool = True
 
     def forbids(self, stacks: Stacks, move: Move) -> bool:
         """Whether it is this move in this arrangement."""
@@ -119,9 +121,9 @@ def plan_avoiding(
     try:
         path = _cheapest(problem, exclusions, limits)
     except UnreachableError as error:
-        if not exclusions:
+        listed = tuple(dict.fromkeys(str(item) for item in exclusions if item.told))
+        if not listed:
             raise
-        listed = tuple(dict.fromkeys(str(item) for item in exclusions))
         raise ImpossibleError(
             f"impossible: no sequence of moves that the arm can make leads from "
             f"{format_stacks(initial)} to '{goal}'; excluded: {'; '.join(listed)}",

@@ -80,6 +80,7 @@ def graph_to_message(graph: SceneGraph, header: Header) -> SceneGraphMsg:
                 row=place.row,
                 column=place.column or 0,
                 clear=[float(height) for height in place.clear],
+                aside=place.aside,
             )
             for place in graph.places
         ],
@@ -109,6 +110,7 @@ def _places_from_messages(messages: Sequence[BaseMsg]) -> tuple[Place, ...]:
             item.row,
             item.column if several else None,
             tuple(item.clear),
+            item.aside,
         )
         for item in messages
     )
