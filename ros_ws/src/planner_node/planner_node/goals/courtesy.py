@@ -9,7 +9,29 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from .language import POLITE, TAKES, VERBS
+from scene_graph import COLORS, PREDICATES, SHAPES
+
+from .language import (
+    BOTH,
+    CLEAR,
+    CORRECTION,
+    EVERYONE,
+    IT,
+    MORE_COLORS,
+    MUTE,
+    NEGATION,
+    NOUNS,
+    NUMBERS,
+    PLACE_NOUNS,
+    PLURALS,
+    POLITE,
+    SIDES,
+    SYNONYMS,
+    TAKEN_BACK,
+    TAKES,
+    VERBS,
+    meant,
+)
 from .terms import Words
 
 #: May stand in front of "that" or "if" where these say only that a goal follows.
@@ -38,10 +60,84 @@ _IF: Final = frozenset({
     "wish", "want", "good", "enough", "no", "the", "was", "were",
 })  # fmt: skip
 
+#: Who talks, and to whom; what they say of themselves is no goal.
+_PERSONS: Final = frozenset({
+    "i", "me", "my", "we", "us", "our", "you", "your", "u", "he", "his", "she", "her", "who",
+})  # fmt: skip
+#: What a goal is about: a clause that has one of these is read, never left out.
+_CONTENT: Final = frozenset().union(
+    *PREDICATES.phrases, COLORS, MORE_COLORS, SHAPES, SYNONYMS, NOUNS, PLURALS, PLACE_NOUNS,
+    SIDES, NUMBERS, CLEAR, TAKES, IT, BOTH, EVERYONE,
+    {NEGATION, CORRECTION, TAKEN_BACK, "there", "here", "not-asked-for", "only", "others"},
+) - {"of", "to", "over", "in", "at", "that", "this", "right", "one", "no", "get", "place"}  # fmt: skip
+_NAMES: Final = frozenset(COLORS) | frozenset(SHAPES)
+#: They say more of the goal than that it follows, or the contrary.
+_TELLING: Final = frozenset({
+    "if", "unless", "when", "once", "until", "before", "while", "except", "without", "or", "hate",
+    "dislike", "avoid", "prevent", "refuse", "forbid", "stop", "doubt", "deny", "undo", "cancel",
+    "forget", "change", "changed", "mind", "opposite", "reverse", "swap", "exchange", "switch",
+    "mirror", "turn", "flip", "rotate", "order", "way", "back", "instead", "wrong", "mistake",
+    "joking", "kidding", "lied", "lying", "false", "ignore", "otherwise", "same", "different",
+    "each-other", "neither", "nor", "afraid", "worried", "fear", "bad", "terrible", "pretend",
+    "imagine", "anyone", "enough", "rather", "than", "last-one", "alone", "elsewhere", "apart",
+})  # fmt: skip
+#: What they ask for is the goal, so that a word behind them that nobody knows may be part of it.
+_ASKING: Final = (VERBS | {
+    "want", "wants", "need", "needs", "like", "love", "prefer", "wish", "should", "shall", "must",
+    "would", "ask", "request", "suggest", "could",
+}) - {"have", "let", "make"}  # fmt: skip
+#: Begin the goal behind what is said of it.
+_COMPLEMENTS: Final = frozenset({"that", "whether", "until"})
+_EVERYTHING: Final = frozenset({"blocks", "block", "things", "everything", "all", "around", "them"})
+
+
+def is_talk(words: Sequence[Words]) -> bool:
+    """Whether somebody says something of himself: "so I was thinking", "you did great".
+
+    Such words name nothing that is on the table, relate nothing, and take nothing back; where they
+    ask for something, every one of them is known.
+    """
+    texts = [item.text for item in words]
+    if any(text in _CONTENT | _TELLING or _is_name(text) for text in texts):
+        return False
+    known = all(text in POLITE | MUTE | _FRAME | _PERSONS for text in texts)
+    return bool(_PERSONS & set(texts)) and (known or not _ASKING & set(texts))
+
+
+def _is_name(text: str) -> bool:
+    """Whether it is a colour or a shape with a typo."""
+    known = text in POLITE | MUTE | _FRAME | _PERSONS
+    return not known and meant(text, _NAMES) is not None
+
+
+def _without_frame(words: list[Words]) -> list[Words]:
+    """Without "what I am trying to say is that", "all I want is for … to", "see whether you can"."""
+    texts = [item.text for item in words]
+    for at in range(len(words) - 2, 0, -1):
+        said = words[:at]
+        if texts[at] in _COMPLEMENTS and (is_talk(said) or _is_of_all(texts, at)):
+            behind = at + 1
+            while behind < len(texts) - 1 and texts[behind] in ("you", "we", "i", "can", "could"):
+                behind += 1
+            return words[behind:]
+        if texts[at] == "for" and "to" in texts[at:]:
+            to = texts.index("to", at)
+            said = said[texts[0] == "all" :]
+            named = any(_is_name(text) or text in _CONTENT for text in texts[at + 1 : to])
+            told = is_talk(said) or all(item.text in _FRAME for item in said)
+            if named and told and texts[to + 1 : to + 2] and texts[to + 1] in MUTE:
+                return [*words[at + 1 : to], *words[to + 1 :]]
+    return words
+
+
+def _is_of_all(texts: Sequence[str], at: int) -> bool:
+    """Whether "move things around" is in front of "until"."""
+    return texts[at] == "until" and all(text in VERBS | _EVERYTHING for text in texts[:at])
+
 
 def without_courtesy(words: Sequence[Words]) -> list[Words]:
     """A part of a goal without what only says that it follows, or that it is a wish."""
-    kept = _without_if(list(words))
+    kept = _without_frame(_without_if(list(words)))
     texts = [item.text for item in kept]
     frame = next((at for at, text in enumerate(texts) if text not in _FRAME), len(texts))
     for at in range(min(frame, len(texts) - 1) - 1, 0, -1):
@@ -70,7 +166,7 @@ def _without_if(words: list[Words]) -> list[Words]:
 def says_nothing(words: Sequence[Words]) -> bool:
     """Whether it is polite and nothing else: "thank you very much", "would you?"."""
     texts = [item.text for item in words]
-    if all(text in POLITE for text in texts):
+    if all(text in POLITE for text in texts) or is_talk(words):
         return True
     spoken = (POLITE | {"you", "i", "we", "that", "would", "is"}) & set(texts)
     return bool(spoken) and all(text in _FRAME for text in texts)

@@ -18,7 +18,7 @@ VERBS: Final = NOUN_VERBS | {
     "put", "move", "set", "get", "bring", "lay", "drop", "leave", "keep", "shift", "push",
     "slide", "transfer", "arrange", "build", "balance", "sit", "make", "let", "have",
     "relocate", "stick", "add", "pop", "plop", "plonk", "chuck", "dump", "shove", "hoist",
-    "remove", "load", "deposit", "carry", "placing", "putting", "moving", "stacking",
+    "create", "form", "construct", "assemble", "give", "show", "remove", "load", "deposit", "carry", "placing", "putting", "moving", "stacking",
 }  # fmt: skip
 #: Pick something up that the next clause calls "it".
 TAKES: Final = frozenset({"take", "grab", "lift", "pick", "fetch", "grasp", "get", "use"})
@@ -60,7 +60,14 @@ POLITE: Final = frozenset({
     "ever", "thank", "again", "there", "asap", "quick", "quickly", "carefully", "gently",
     "slowly", "careful", "everyone", "pray", "love", "sweetheart", "darling", "honey", "monsieur",
     "mister", "miss", "boss", "pal", "dude", "guys", "folks", "professor", "doctor", "pardon",
-    "excuse", "many", "yes", "yeah", "yep", "very", "much", "advance", "time",
+    "excuse", "many", "yes", "yeah", "yep", "very", "much", "advance", "time", "listen", "look",
+    "remember", "honestly", "frankly", "basically", "next", "finally", "lastly", "first", "ultimately",
+    "firstly", "secondly", "thirdly", "then", "anyway", "anyways", "essentially", "note",
+    "attention", "umm", "hmmm", "eh", "ha", "haha", "lol", "wow", "yay", "today", "tonight",
+    "tomorrow", "man", "bro", "team", "this", "computer", "machine", "nurse", "colleague", "gosh",
+    "afterwards", "additionally", "furthermore", "moreover", "also", "obviously", "clearly",
+    "ideally", "importantly", "important", "bitte", "danke", "merci", "servus", "hallo", "moin",
+    "por", "favor", "por-favor", "all-right", "mkay", "okey", "k", "kk", "oki", "ty", "tx",
 })  # fmt: skip
 #: Words of a heading, as in "the goal for my class: red on blue"; all else before a colon counts.
 HEADING: Final = frozenset({
@@ -105,7 +112,7 @@ MODALS: Final = frozenset({
     "should", "shall", "must", "would", "stands", "standing", "sitting", "placed", "needs",
     "goes",
 })  # fmt: skip
-ARTICLES: Final = frozenset({"the", "teh", "hte"})
+ARTICLES: Final = frozenset({"the", "teh", "hte", "th", "da", "der", "die", "das"})
 NEGATION: Final = "not"
 #: Words that hold a negation; with what is left of them.
 SHORT_NEGATIONS: Final = {
@@ -123,12 +130,14 @@ CARRIES: Final = frozenset({"carry", "carries", "bear", "bears", "support", "hol
 
 #: Fit every object.
 NOUNS: Final = frozenset({
-    "block", "object", "one", "thing", "piece", "item", "brick", "part", "element",
+    "block", "object", "one", "thing", "piece", "item", "brick", "part", "element", "thingy",
+    "klotz", "stone", "toy", "guy",
 })  # fmt: skip
 #: Of several, what they are called one by one.
 PLURALS: Final = {
     "blocks": "block", "objects": "object", "ones": "one", "things": "thing", "pieces": "piece",
-    "items": "item", "bricks": "brick", "parts": "part", "elements": "element",
+    "items": "item", "bricks": "brick", "parts": "part", "elements": "element", "thingies": "thingy",
+    "stones": "stone", "toys": "toy", "guys": "guy",
     "boxes": "box", "cubes": "cube", "cylinders": "cylinder",
     "spheres": "sphere", "balls": "ball", "prisms": "prism", "roofs": "roof", "cuboids": "cuboid",
     "stacks": "stack", "places": "place", "towers": "tower", "columns": "column", "piles": "pile",

@@ -89,6 +89,8 @@ class _Reader:
                 spoken = [*named, clause.subject]
                 if clause.subject.stands_for_several:
                     spoken = named or self._told.all_named(clause.subject)
+                if clause.subject.words.text in _WHICH and named:
+                    spoken = subjects = named[-1:]  # "the red one, which must be clear, …"
                 for term in spoken:
                     self._told.clear(self._told.meant(term, None))
                 self._told.subjects, self._told.object = subjects, None

@@ -265,9 +265,11 @@ def _means_nothing(part: str, known: frozenset[str]) -> bool:
 
 def _shortened(part: str, known: set[str]) -> str | None:
     """The one word of which letters were left out: "yel" or "ylw" for "yellow"."""
-    if len(part) < 3 or part in _RIGHT:
+    if len(part) < 2 or part in _RIGHT:
         return None
     found = [word for word in known if word[0] == part[0] and _in_order(part, word)]
+    if len(part) == 2:
+        found = [word for word in found if len(word) == 3]  # "rd", "bx"
     return found[0] if len(found) == 1 else None
 
 

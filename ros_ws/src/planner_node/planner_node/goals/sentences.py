@@ -200,7 +200,7 @@ def _split(clauses: Sequence[list[Words]]) -> Iterator[list[Words]]:
 def _without_both(part: list[Words]) -> list[Words]:
     """ "both red" in front of "and blue" without its "both"."""
     at = next((index for index, item in enumerate(part) if item.text == "both"), len(part) - 1)
-    named = at + 1 < len(part) and part[-1].text not in PLURALS and not _has_phrase(part)
+    named = at + 1 < len(part) and part[-1].text not in PLURALS and not _has_phrase(part[at:])
     return [*part[:at], *part[at + 1 :]] if named else part
 
 

@@ -18,12 +18,17 @@ from .terms import Words
 _TOKEN: Final = re.compile(
     r"(?P<left_out>[:;]-?[)D(](?!\w)|[\"“”‘]|['’](?!\w)|(?<!\w)['’]"
     r"|(?<=\bmax)\.|(?<=\bmin)\.|(?<=\bno)\.(?=\s*\d)|(?<=\bnr)\.(?=\s*\d))"
-    r"|(?P<word>[^\W_](?:\w|-(?=\w)|['’](?=\w))*)|(?P<sign>[-=]+>|→|[&+=#])"
-    r"|(?P<end>[.;!?…])|(?P<comma>[,:()])|(?P<dash>[-–—]+(?=\s))|(?P<other>\S)",
+    r"|(?P<word>[^\W_](?:\w|-(?=\w)|['’](?=\w))*)|(?P<sign>[-=]+>|→|[<>≤≥]=|[≤≥]|[&+=#@])"
+    r"|(?P<end>[.;!?…])|(?P<comma>[,:()/])|(?P<dash>[-–—]+(?=\s))|(?P<other>\S)",
     re.IGNORECASE,
 )
 #: What is written as a sign, as words.
-_SIGNS: Final = {"&": "and", "+": "and", "=": "is", "#": "number"}
+_SIGNS: Final = {"&": "and", "+": "and", "=": "is", "#": "number", "@": "in", "<=": "at-most",
+                 ">=": "at-least", "≤": "at-most", "≥": "at-least"}  # fmt: skip
+#: What is written short, as words.
+_SHORT: Final = {"u": "you", "n": "and", "nd": "and", "w": "with", "ur": "your", "gonna": "going to",
+                 "wanna": "want to", "gotta": "must", "im": "i am", "ive": "i have",
+                 "id": "i would", "mit": "with", "und": "and", "auf": "on"}  # fmt: skip
 #: Ask about what is there, at the start of a question.
 _ASKING: Final = frozenset({
     "is", "are", "was", "were", "does", "did", "has", "have", "what", "which", "where", "who",
@@ -86,8 +91,10 @@ def _words(word: str, offset: int) -> list[Words]:
     if word in SHORT_NEGATIONS:
         end = offset + len(word)
         return [Words(SHORT_NEGATIONS[word], offset, end), Words(NEGATION, offset, end)]
-    head, mark, tail = word.partition("'")
     end = offset + len(word)
+    if word in _SHORT:
+        return [Words(one, offset, end) for one in _SHORT[word].split()]
+    head, mark, tail = word.partition("'")
     if not mark:
         return _apart(word, offset) or [Words(without_slip(word), offset, end)]
     if tail == "t":

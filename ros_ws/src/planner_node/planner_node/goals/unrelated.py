@@ -31,6 +31,10 @@ def unrelated(text: str, words: list[Words]) -> Said:
     start = max(verb_at_start(rest), asker(rest))
     name = without_ends(rest[start:])
     asks = [item for item in rest if item.text in MUTE and item not in name]
+    if clear and [item.text for item in name[:2]] == ["top", "of"]:
+        name = name[2:]  # "leave the top of red free"
+    if clear and not name and words[0].text == "which":
+        name = words[:1]
     if len(clear) == 1 and name and not denied:
         return Said(words, term_of(name), clears=True)
     if clear or denied or not name:

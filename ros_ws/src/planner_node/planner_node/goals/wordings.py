@@ -61,6 +61,13 @@ _NUMBERS: Final[Wordings] = {
     ("nobody",): ("nothing",),
     ("neither", "of"): ("no",),
     ("except", "for"): ("except",),
+    ("other", "than"): ("except",),
+    ("besides",): ("except",),
+    ("no", "more", "blocks"): ("no", "blocks"),
+    ("no", "more", "block"): ("no", "block"),
+    ("all", "by", "itself"): ("alone",),
+    ("all", "by", "themselves"): ("alone",),
+    ("all", "alone"): ("alone",),
     ("apart", "from"): ("except",),
     ("that", "are", "not"): ("except", "all"),
     ("that", "is", "not"): ("except",),
@@ -106,7 +113,10 @@ _NOTHING: Final = _all_as(
         "right now", "for today", "if possible", "before next run", "before next trial",
         "for next run", "for next trial", "neither more nor less", "no more and no less",
         "no more no less", "sorry for trouble", "sorry for bother", "sorry to bother you",
-        "would you be so kind and", "as long as", "provided that",
+        "would you be so kind and", "as long as", "provided that", "order irrelevant",
+        "order is irrelevant", "order is not important", "order not important",
+        "order unimportant", "while you is at it", "while we is at it", "while you are at it",
+        "while at it", "this time", "if you do not mind",
     ),
 )  # fmt: skip
 #: People who correct themselves.
@@ -127,7 +137,7 @@ _CORRECTIONS: Final = _all_as(
         for what in ("that", "it", "this", "last one")
     ),
 )  # fmt: skip
-_REST: Final = frozenset({"rest", "others", "remainder", "remaining blocks", "other blocks",
+_REST: Final = frozenset({"rest", "others", "remainder", "remaining blocks", "other blocks", "remaining ones", "other ones",
                           "everything else", "all others"})  # fmt: skip
 #: What is not asked for.
 _UNASKED: Final = _all_as(
@@ -141,7 +151,13 @@ _UNASKED: Final = _all_as(
             "i do not care about REST", "i do not care where REST goes",
             "i do not care where REST go", "do not care about REST", "REST does not matter",
             "REST do not matter", "REST anywhere", "REST can go anywhere", "REST wherever",
-            "do not touch REST", "never mind REST",
+            "do not touch REST", "never mind REST", "do not worry about REST", "ignore REST",
+            "where REST go is up to you", "where REST goes is up to you", "REST is up to you",
+            "REST are up to you", "REST wherever you like", "REST wherever you want",
+            "REST as you like", "REST as you wish", "put REST wherever you like",
+            "put REST wherever you want", "put REST anywhere", "do whatever you like with REST",
+            "do whatever you want with REST", "do what you like with REST",
+            "do what you want with REST",
         )
     ),
 )  # fmt: skip
@@ -169,6 +185,8 @@ MERGED: Final[Wordings] = {
     ("has", "to"): ("must",),
     ("have", "to"): ("must",),
     ("lets",): ("let",),
+    ("avoid",): ("do", "not"),
+    ("refrain", "from"): ("do", "not"),
     **dict.fromkeys(
         (
             ("not", "have", "to"),
