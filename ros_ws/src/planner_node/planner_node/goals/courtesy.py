@@ -113,8 +113,14 @@ def _is_name(text: str) -> bool:
 def _without_frame(words: list[Words]) -> list[Words]:
     """Without "what I am trying to say is that", "all I want is for … to", "see whether you can"."""
     texts = [item.text for item in words]
-    for at in range(len(words) - 2, 0, -1):
-        said = words[:at]
+    for at in range(len(words) - 2, -1, -1):
+        # "all I want is …"
+        said = [
+            item for item, behind in zip(words[:at], texts[1:])
+            if item.text != "all" or behind not in _PERSONS
+        ]  # fmt: skip
+        if not said and texts[at] != "whether":
+            continue
         if texts[at] in _COMPLEMENTS and (is_talk(said) or _is_of_all(texts, at)):
             behind = at + 1
             while behind < len(texts) - 1 and texts[behind] in ("you", "we", "i", "can", "could"):
@@ -122,7 +128,6 @@ def _without_frame(words: list[Words]) -> list[Words]:
             return words[behind:]
         if texts[at] == "for" and "to" in texts[at:]:
             to = texts.index("to", at)
-            said = said[texts[0] == "all" :]
             named = any(_is_name(text) or text in _CONTENT for text in texts[at + 1 : to])
             told = is_talk(said) or all(item.text in _FRAME for item in said)
             if named and told and texts[to + 1 : to + 2] and texts[to + 1] in MUTE:

@@ -6,12 +6,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from .language import ARTICLES, HOLDS, JOINS, MUTE, NOUN_VERBS, TAKES
+from .language import ARTICLES, HOLDS, JOINS, MUTE, NOUN_VERBS, TAKES, VERBS
 from .orders import order_at
 from .places import place_at
 from .terms import Words, number_of
 from .wordings import MERGED
 
+_TOWERS: Final = frozenset({"tower", "stack", "pile"})
+_BUILDING: Final = VERBS | {"", "want", "need", "like", "please", "be", "is"}
 _LONGEST: Final = max(map(len, MERGED))
 
 
@@ -49,6 +51,8 @@ def _at(words: Sequence[Words], before: str, removing: bool) -> tuple[list[Words
         return [Words(name, words[0].offset, words[used - 1].stop)], used
     if place := place_at(words, before):
         return place
+    if texts[0] == "a" and texts[2:3] == ("of",) and texts[1] in _TOWERS and before in _BUILDING:
+        return [], 3  # "build a tower of red on blue"
     if between := _between(texts):
         text, used = between
         return [Words(text, words[0].offset, words[used - 1].stop)], used

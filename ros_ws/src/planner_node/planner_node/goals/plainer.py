@@ -11,8 +11,9 @@ from scene_graph import PREDICATES
 
 from .described import by_place
 from .holdings import as_relation
-from .language import EXCEPT, STEPS, TAKES, UPON, VERBS
+from .language import EXCEPT, MUTE, STEPS, TAKES, UPON, VERBS
 from .phrases import find
+from .relative import as_told_of
 from .terms import Words, number_of
 
 _EDGES: Final = (
@@ -57,7 +58,8 @@ def plainer(words: Sequence[Words]) -> Plain | None:
             where = words[at]
             phrase = [Words(side, where.offset, where.stop), Words("of", where.stop)]
             return Plain([*words[:at], *phrase, *words[at + 1 :]], adjacent=True)
-    if told := _except_behind(words):
+    told = _except_behind(words) or as_told_of(words) or _alone_behind(words) or _apart(words)
+    if told := told or _height(words):
         return Plain(told)
     if described := by_place(words):
         return Plain(described[0], edge=described[1])
@@ -88,3 +90,39 @@ def _except_behind(words: Sequence[Words]) -> list[Words] | None:
         only = Words("only", words[first - 1].offset, words[at].stop)
         return [*words[: first - 1], only, *words[at + 1 :], *words[first:at]]
     return [*words[:first], *words[at:], *words[first:at]]
+
+
+def _alone_behind(words: Sequence[Words]) -> list[Words] | None:
+    """ "red in stack1 alone" with "alone" behind the name that it is said of."""
+    found = list(find(words, PREDICATES.phrases)) if words[-1].text == "alone" else []
+    if len(found) != 1 or not found[0].first or len(words) < found[0].last + 2:
+        return None
+    return [*words[: found[0].first], words[-1], *words[found[0].first : -1]]
+
+
+def _apart(words: Sequence[Words]) -> list[Words] | None:
+    """ "no two boxes in the same stack" as "all boxes in different stacks"."""
+    texts = [item.text for item in words]
+    at = texts.index("same") if "same" in texts else 0
+    if texts[:2] != ["no", "two"] or at < 4 or at + 2 != len(words):
+        return None
+    every = Words("all", words[0].offset, words[1].stop)
+    apart = Words("different", words[at].offset, words[at].stop)
+    return [every, *words[2:at], apart, words[at + 1]]
+
+
+def _height(words: Sequence[Words]) -> list[Words] | None:
+    """ "the height of stack 0 is at most 2" as "at most 2 blocks in stack 0"."""
+    if [item.text for item in words[:2]] != ["height", "of"]:
+        return None
+    for last in (4, 3):
+        place, number = words[2:last], list(words[last:])
+        if not Words(" ".join(item.text for item in place), 0).is_place:
+            continue
+        while number and number[0].text in MUTE:
+            number.pop(0)
+        if not number or number_of(number[-1].text) is None:
+            return None
+        offset = number[-1].stop
+        return [*number, Words("blocks", offset, offset), Words("in", offset, offset), *place]
+    return None

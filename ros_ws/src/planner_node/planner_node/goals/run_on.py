@@ -59,6 +59,11 @@ def told_apart(clause: list[Words]) -> Iterator[list[Words]]:
     yield clause[done:]
 
 
+def is_name(words: Sequence[Words]) -> bool:
+    """Whether it is one name and nothing else."""
+    return bool(words) and _name(words) == len(words)
+
+
 def _in_place(clause: list[Words]) -> list[Words] | None:
     """ "red stack 1" as "red in stack 1"; None for all else."""
     names = _names(clause, 0, len(clause))

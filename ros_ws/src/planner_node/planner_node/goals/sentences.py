@@ -17,19 +17,23 @@ from .language import (
     EVERYONE,
     EXCEPT,
     HEADING,
+    HOLDS,
     JOINS,
     MUTE,
     NEGATION,
     NOUN_VERBS,
     OPENINGS,
     PLURALS,
+    SIDES,
     TAKES,
     meant,
 )
 from .merged import merged
 from .orders import ORDERS
 from .phrases import RIGHT_WORDS, find
-from .run_on import told_apart
+from .relative import with_looks
+from .run_on import is_name, told_apart
+from .sides import with_sides
 from .terms import Words
 from .tokens import parts_of
 from .towers import as_tower
@@ -37,6 +41,8 @@ from .towers import as_tower
 _BEFORE_OPENING: Final = (MUTE | HEADING) - {"this", "one", "two", "them"}
 #: Say in which order a tower is told.
 _TOLD_IN_ORDER: Final = ORDERS.keys() | {"bottom", "top"}
+#: Places on their own, in front of a colon.
+_OUTERMOST: Final = {word: side for word, side in SIDES.items() if side != "middle"}
 _NO_NAMES: Final = MUTE | TAKES | CLEAR | {"elsewhere"}
 _NONE: Final = frozenset({"nothing", "no", "none"})
 _DENYING: Final = frozenset({NEGATION, "nothing", "none"})
@@ -55,6 +61,9 @@ def sentences(text: str) -> Iterator[list[list[Words]]]:
         kept = [clause for clause in clauses if not _says_nothing(clause)]
         if found and kept and joined(found[-1], kept):
             found[-1] += kept
+        elif found and kept and _goes_on(found[-1], kept):
+            found[-1][0] += kept[0]  # "Red. On blue."
+            found[-1] += kept[1:]
         elif kept:
             found.append(kept)
     heading: list[list[Words]] = []
@@ -68,6 +77,13 @@ def sentences(text: str) -> Iterator[list[list[Words]]]:
             heading = clauses  # "Build a tower. At the bottom …"
         elif clauses:
             yield _finished(clauses)
+
+
+def _goes_on(before: Sequence[list[Words]], after: Sequence[list[Words]]) -> bool:
+    """Whether a sentence says of nobody what it says, and the one before nothing of somebody."""
+    starts = next(find(after[0], PREDICATES.phrases), None)
+    names = is_name([item for clause in before for item in clause])
+    return names and starts is not None and not starts.first and is_name(after[0][starts.last :])
 
 
 def _written(text: str) -> Iterator[list[list[Words]]]:
@@ -97,7 +113,8 @@ def _finished(clauses: Sequence[list[Words]]) -> list[list[Words]]:
     """The clauses of a sentence, each with one relation or one name."""
     parts: list[list[Words]] = []
     denied = False
-    for clause in map(_with_exceptions, _with_order(clauses)):
+    for clause in map(_with_exceptions, _with_order(with_sides(clauses))):
+        clause = _with_only(with_looks(clause))
         parts += _split_negation(clause, denied)
         # "nothing on red, green or blue"
         denied = any(item.text in _DENYING for item in clause) or (
@@ -127,6 +144,8 @@ def _has_phrase(clause: Sequence[Words]) -> bool:
 
 def _place_heading(clause: list[Words]) -> list[Words] | None:
     """ "in stack 1" for "stack 1" or "a tower in stack 1" before a colon; None for all else."""
+    if len(clause) == 1 and (side := _OUTERMOST.get(clause[0].text)):
+        clause = [Words(f"{side} stack", clause[0].offset, clause[0].stop)]
     clause = [item for item in clause if item.text not in (HEADING | MUTE) - NOUN_VERBS]
     if len(clause) > 1 and clause[0].text in ("in", "on", "at"):
         clause = clause[1:]
@@ -172,6 +191,14 @@ def _with_exceptions(clause: list[Words]) -> list[Words]:
             word = Words(EXCEPT, clause[at].offset, clause[at].stop)
             return [*clause[:at], word, *clause[at + 1 :]]
     return clause
+
+
+def _with_only(clause: list[Words]) -> list[Words]:
+    """ "stack 0 contains red and blue only" with "only" in front of what it is said of."""
+    at = next((index for index, item in enumerate(clause) if item.text in HOLDS), 0)
+    if not at or clause[-1].text not in ("only", "alone"):
+        return clause
+    return [*clause[: at + 1], Words("only", clause[-1].offset, clause[-1].stop), *clause[at + 1 : -1]]
 
 
 def _split(clauses: Sequence[list[Words]]) -> Iterator[list[Words]]:

@@ -15,6 +15,8 @@ from .language import NEGATION, SHORT_NEGATIONS
 from .phrases import without_slip
 from .terms import Words
 
+#: Relations as they are written in logic: "on(red, blue)", "clear(red)".
+_CALL: Final = re.compile(r"\b(?P<name>[a-z_ ]+?)\s?\((?P<one>[\w ]+)(?:,(?P<other>[\w ]+))?\)", re.I)
 _TOKEN: Final = re.compile(
     r"(?P<left_out>[:;]-?[)D(](?!\w)|[\"“”‘]|['’](?!\w)|(?<!\w)['’]"
     r"|(?<=\bmax)\.|(?<=\bmin)\.|(?<=\bno)\.(?=\s*\d)|(?<=\bnr)\.(?=\s*\d))"

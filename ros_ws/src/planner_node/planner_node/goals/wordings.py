@@ -249,8 +249,14 @@ MERGED: Final[Wordings] = {
     ("want", "you"): ("want",),
     ("need", "you"): ("want",),
     ("like", "you"): ("want",),
-    ("build", "a", "tower"): ("build",),
-    ("make", "a", "tower"): ("build",),
-    ("build", "a", "stack"): ("build",),
-    ("make", "a", "stack"): ("build",),
+    **{
+        (verb, "a", noun, *of): ("build",)
+        for verb in ("build", "make", "create", "construct", "form")
+        for noun in ("tower", "stack")
+        for of in ((), ("of",))
+    },
+    ("made", "of"): ("with",),
+    ("consisting", "of"): ("with",),
+    ("made", "up", "of"): ("with",),
+    ("composed", "of"): ("with",),
 }  # fmt: skip
