@@ -121,17 +121,17 @@ def _without_frame(words: list[Words]) -> list[Words]:
         ]  # fmt: skip
         if not said and texts[at] != "whether":
             continue
-        if texts[at] in _COMPLEMENTS and (is_talk(said) or _is_of_all(texts, at)):
+        if texts[at] in _COMPLEMENTS and (not said or is_talk(said) or _is_of_all(texts, at)):
             behind = at + 1
             while behind < len(texts) - 1 and texts[behind] in ("you", "we", "i", "can", "could"):
                 behind += 1
             return words[behind:]
-        if texts[at] == "for" and "to" in texts[at:]:
-            to = texts.index("to", at)
-            named = any(_is_name(text) or text in _CONTENT for text in texts[at + 1 : to])
-            told = is_talk(said) or all(item.text in _FRAME for item in said)
-            if named and told and texts[to + 1 : to + 2] and texts[to + 1] in MUTE:
-                return [*words[at + 1 : to], *words[to + 1 :]]
+        if texts[at] == "for" and said:
+            # Of "for red to be" merging has left out the "to".
+            verb = next((item for item in range(at + 2, len(texts)) if texts[item] in MUTE), at)
+            named = any(_is_name(text) or text in _CONTENT for text in texts[at + 1 : verb])
+            if named and (is_talk(said) or all(item.text in _FRAME for item in said)):
+                return words[at + 1 :]
     return words
 
 

@@ -108,6 +108,7 @@ class _Reader:
                 waiting, last = [], clause
                 continue
             if clause.links:
+                clause, named = _of_topic(clause, named)
                 subjects = self._subjects_of(clause, named, subjects)
                 self._told.add_links(subjects, clause)
                 waiting, last = [], clause
@@ -237,3 +238,14 @@ class _Reader:
                 raise unclear(clause.subject)
             return [self._told.object]
         return [*named, self._told.meant(clause.subject, None, again=bool(clause.links))]
+
+
+def _of_topic(clause: Said, named: list[Term]) -> tuple[Said, list[Term]]:
+    """ "blue first, red on that" with the name in front as the object of what is said of it."""
+    own = clause.subject is not None and clause.subject.words.text not in IT | _WHICH | BOTH
+    if not own or len(named) != 1 or len(clause.links) != 1:
+        return clause, named
+    phrase, denied, object_, written = clause.links[0]
+    if object_.words.text not in IT or named[0].kind is not Kind.THE:
+        return clause, named
+    return replace(clause, links=((phrase, denied, named[0], written),)), []

@@ -19,6 +19,7 @@ from .terms import Words, number_of
 _EDGES: Final = (
     ("at", "top"), ("at", "very", "top"), ("on", "very", "top"), ("at", "bottom"),
     ("at", "very", "bottom"), ("on", "very", "bottom"), ("on", "top"),
+    ("at", "base"), ("at", "very", "base"),
 )  # fmt: skip
 _NEIGHBOURS: Final = frozenset({"adjacent", "neighbours", "neighbors", "neighbouring"})
 _SIDE_BY_SIDE: Final = ("next", "to", "each-other")
@@ -72,7 +73,7 @@ def plainer(words: Sequence[Words]) -> Plain | None:
         return Plain(list(words[:-1]))
     for ending in _EDGES:
         if tuple(texts[-len(ending) :]) == ending and len(words) > len(ending):
-            edge = UPON if ending == ("on", "top") else ending[-1]
+            edge = UPON if ending == ("on", "top") else ending[-1].replace("base", "bottom")
             return Plain(list(words[: -len(ending)]), edge=edge)
     if held := as_relation(words):
         return Plain(held, of_object=True)

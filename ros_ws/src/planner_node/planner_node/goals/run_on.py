@@ -50,7 +50,7 @@ def told_apart(clause: list[Words]) -> Iterator[list[Words]]:
             break  # "on blue put red"
         object_last = number == len(found) and number > 0 and not ordered
         for index, (first, stop) in enumerate(names[:-1]):
-            place = ordered and index == 0 and clause[first].is_place
+            place = ordered and index == 0 and _is_place(clause[first:stop])
             if object_last or place:
                 continue
             yield clause[done:stop]
@@ -64,13 +64,17 @@ def is_name(words: Sequence[Words]) -> bool:
     return bool(words) and _name(words) == len(words)
 
 
+def _is_place(words: Sequence[Words]) -> bool:
+    return Words(" ".join(item.text for item in words), 0).is_place
+
+
 def _in_place(clause: list[Words]) -> list[Words] | None:
     """ "red stack 1" as "red in stack 1"; None for all else."""
     names = _names(clause, 0, len(clause))
     if len(names) != 2:
         return None
     parts = [clause[first:last] for first, last in names]
-    places = [Words(" ".join(item.text for item in part), 0).is_place for part in parts]
+    places = [_is_place(part) for part in parts]
     if sum(places) != 1:
         return None
     place, name = parts if places[0] else reversed(parts)

@@ -113,8 +113,8 @@ def _finished(clauses: Sequence[list[Words]]) -> list[list[Words]]:
     """The clauses of a sentence, each with one relation or one name."""
     parts: list[list[Words]] = []
     denied = False
-    for clause in map(_with_exceptions, _with_order(with_sides(clauses))):
-        clause = _with_only(with_looks(clause))
+    clauses = _with_only([with_looks(clause) for clause in with_sides(clauses)])
+    for clause in map(_with_exceptions, _with_order(clauses)):
         parts += _split_negation(clause, denied)
         # "nothing on red, green or blue"
         denied = any(item.text in _DENYING for item in clause) or (
@@ -193,12 +193,27 @@ def _with_exceptions(clause: list[Words]) -> list[Words]:
     return clause
 
 
-def _with_only(clause: list[Words]) -> list[Words]:
-    """ "stack 0 contains red and blue only" with "only" in front of what it is said of."""
-    at = next((index for index, item in enumerate(clause) if item.text in HOLDS), 0)
-    if not at or clause[-1].text not in ("only", "alone"):
-        return clause
-    return [*clause[: at + 1], Words("only", clause[-1].offset, clause[-1].stop), *clause[at + 1 : -1]]
+def _with_only(clauses: Sequence[list[Words]]) -> list[list[Words]]:
+    """ "stack 0 contains red and blue only" as "only red and blue in stack 0"."""
+    clauses = list(clauses)
+    for number, clause in enumerate(clauses):
+        at = next((index for index, item in enumerate(clause) if item.text in HOLDS), 0)
+        place = [item for item in clause[:at] if item.text not in MUTE - NOUN_VERBS]
+        last = number
+        while last + 1 < len(clauses) and not _has_phrase(clauses[last + 1]):
+            last += 1
+        held = [clause[at + 1 :], *clauses[number + 1 : last + 1]]
+        texts = [item.text for part in held for item in part]
+        if not _is_place(place) or "only" not in (*texts[:1], *texts[-1:]) or NEGATION in texts:
+            continue
+        only = next(item for part in held for item in part if item.text == "only")
+        held = [[item for item in part if item is not only] for part in held]
+        held[0] = [only, *held[0]]
+        inside = Words("in", place[0].offset, place[0].offset)
+        held[-1] = [*held[-1], inside, *place]
+        clauses[number : last + 1] = held
+        break
+    return clauses
 
 
 def _split(clauses: Sequence[list[Words]]) -> Iterator[list[Words]]:

@@ -8,15 +8,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Final
 
-from scene_graph import COLORS
+from scene_graph import COLORS, PREDICATES
 
 from ..errors import InvalidGoalError
-from .language import NEGATION, SHORT_NEGATIONS
+from .language import CLEAR, NEGATION, SHORT_NEGATIONS
 from .phrases import without_slip
 from .terms import Words
 
 #: Relations as they are written in logic: "on(red, blue)", "clear(red)".
-_CALL: Final = re.compile(r"\b(?P<name>[a-z_ ]+?)\s?\((?P<one>[\w ]+)(?:,(?P<other>[\w ]+))?\)", re.I)
+_CALL: Final = re.compile(r"([a-z_]+)\(([\w ]+)(?:,([\w ]+))?\)", re.IGNORECASE)
 _TOKEN: Final = re.compile(
     r"(?P<left_out>[:;]-?[)D(](?!\w)|[\"“”‘]|['’](?!\w)|(?<!\w)['’]"
     r"|(?<=\bmax)\.|(?<=\bmin)\.|(?<=\bno)\.(?=\s*\d)|(?<=\bnr)\.(?=\s*\d))"
@@ -60,8 +60,13 @@ def parts_of(text: str) -> Iterator[Part]:
         InvalidGoalError: for a character that goals do not have, and for questions.
     """
     part, first = Part(), True
+    behind = 0
     for match in _TOKEN.finditer(text):
-        if match["left_out"]:
+        if match["left_out"] or match.start() < behind:
+            continue
+        if (call := _CALL.match(text, match.start())) and (told := _relation(call)):
+            part.words += told
+            behind = call.end()
             continue
         if match["other"]:
             raise InvalidGoalError("unexpected character", match.start(), match["other"])
@@ -86,6 +91,19 @@ def parts_of(text: str) -> Iterator[Part]:
             part = Part()
     part.end = True
     yield part
+
+
+def _relation(call: re.Match[str]) -> list[Words]:
+    """ "on(red, blue)" as "red on blue", "clear(red)" as it is; none for what is no relation."""
+    name = tuple(call[1].lower().split("_"))
+    if (name in PREDICATES.phrases) != bool(call[3]) or not (call[3] or name[0] in CLEAR):
+        return []
+    order = (2, 1, 3) if call[3] else (1, 2)
+    return [
+        Words(word[0].lower(), call.start(group) + word.start())
+        for group in order
+        for word in re.finditer(r"[^\W_]+", call[group])
+    ]
 
 
 def _words(word: str, offset: int) -> list[Words]:
