@@ -77,6 +77,8 @@ def read_clause(text: str, words: list[Words]) -> Said:
     before = [item for item in words[verb:first] if item.text not in MUTE - NOUN_VERBS - WANTS]
     negated = [item for item in before if item.text == NEGATION]
     before = [item for item in before if item.text != NEGATION]
+    while len(before) > 1 and before[-1].text in WANTS:
+        before = before[:-1]  # "red wants to be on blue"
     if wants := [index for index, item in enumerate(before) if item.text in WANTS]:
         # Who wants it is nothing that is on the table: "my students want red on blue".
         before = before[wants[-1] + 1 :] or before

@@ -44,7 +44,7 @@ _FRAME: Final = POLITE | {
     "necessary", "essential", "required", "most", "very", "really", "much", "also", "just",
     "then", "to", "do", "me", "us", "my", "ask", "trouble", "mind", "bother", "too", "certain",
     "such", "as", "by", "this", "that", "if", "out", "and", "arrange", "suggest", "request",
-    "permission", "with", "your", "rather", "sorry", "please", "wonder", "wondering", "asking",
+    "permission", "a", "an", "needful", "hereby", "requested", "with", "your", "rather", "sorry", "please", "wonder", "wondering", "asking",
 }  # fmt: skip
 #: In front of "if", they make a wish of it; without them it asks, or is a condition.
 _WISHES: Final = frozenset({
@@ -87,7 +87,13 @@ _ASKING: Final = (VERBS | {
     "would", "ask", "request", "suggest", "could",
 }) - {"have", "let", "make"}  # fmt: skip
 #: Begin the goal behind what is said of it.
-_COMPLEMENTS: Final = frozenset({"that", "whether", "until"})
+_COMPLEMENTS: Final = frozenset({"that", "until"})
+_SAYING: Final = frozenset({
+    "say", "saying", "says", "said", "trying", "tried", "mean", "what", "insist", "insists",
+    "propose", "proposes", "demand", "demands", "decided", "agreed", "idea", "point", "aim",
+    "wants", "wish", "hoping", "asked", "asks", "hereby", "requested", "is", "it", "vote",
+})  # fmt: skip
+_MODALS: Final = frozenset({"should", "must", "shall", "needs", "be", "ought", "goes"})
 _EVERYTHING: Final = frozenset({"blocks", "block", "things", "everything", "all", "around", "them"})
 
 
@@ -121,11 +127,16 @@ def _without_frame(words: list[Words]) -> list[Words]:
         ]  # fmt: skip
         if not said and texts[at] != "whether":
             continue
-        if texts[at] in _COMPLEMENTS and (not said or is_talk(said) or _is_of_all(texts, at)):
-            behind = at + 1
-            while behind < len(texts) - 1 and texts[behind] in ("you", "we", "i", "can", "could"):
-                behind += 1
-            return words[behind:]
+        if texts[at] in _COMPLEMENTS and _is_of_all(texts, at):
+            return words[at + 1 :]
+        if texts[at] == "that" and is_talk(said):
+            # What somebody says or wants is a goal, what he knows or hates is one if it "should" be.
+            spoken = all(item.text in _SAYING | _PERSONS | _FRAME | MUTE for item in said)
+            if spoken or any(text in _MODALS for text in texts[at + 1 :]):
+                return words[at + 1 :]
+        able = texts[at + 1] in _PERSONS and texts[at + 2 : at + 3] in (["can"], ["could"])
+        if texts[at] == "whether" and able and (not said or is_talk(said)):
+            return words[at + 3 :]
         if texts[at] == "for" and said:
             # Of "for red to be" merging has left out the "to".
             verb = next((item for item in range(at + 2, len(texts)) if texts[item] in MUTE), at)
@@ -136,14 +147,20 @@ def _without_frame(words: list[Words]) -> list[Words]:
 
 
 def _is_of_all(texts: Sequence[str], at: int) -> bool:
-    """Whether "move things around" is in front of "until"."""
-    return texts[at] == "until" and all(text in VERBS | _EVERYTHING for text in texts[:at])
+    """Whether "move things around" is in front of "until" or "so that"."""
+    before = texts[:at] if texts[at] == "until" else texts[: at - 1]
+    aimed = texts[at] == "until" or texts[at - 1 : at] == ["so"]
+    moved = bool(before) and all(text in VERBS | _EVERYTHING for text in before)
+    return moved and aimed and before[0] in VERBS
 
 
 def without_courtesy(words: Sequence[Words]) -> list[Words]:
     """A part of a goal without what only says that it follows, or that it is a wish."""
     kept = _without_frame(_without_if(list(words)))
     texts = [item.text for item in kept]
+    verb = next((at for at, text in enumerate(texts) if text in (VERBS | TAKES) - _FRAME), 0)
+    if verb > 1 and texts[0] == "it" and all(text in _FRAME for text in texts[:verb]):
+        return kept[verb:]  # "it is necessary to put red on blue"
     frame = next((at for at, text in enumerate(texts) if text not in _FRAME), len(texts))
     for at in range(min(frame, len(texts) - 1) - 1, 0, -1):
         wished = texts[at] == "if" and any(text in _WISHES for text in texts[:at])

@@ -18,6 +18,7 @@ VERBS: Final = NOUN_VERBS | {
     "put", "move", "set", "get", "bring", "lay", "drop", "leave", "keep", "shift", "push",
     "slide", "transfer", "arrange", "build", "balance", "sit", "make", "let", "have",
     "relocate", "stick", "add", "pop", "plop", "plonk", "chuck", "dump", "shove", "hoist",
+    "distribute", "rearrange", "spread", "organize", "organise", "reorganize",
     "create", "form", "construct", "assemble", "give", "show", "remove", "load", "deposit", "carry", "placing", "putting", "moving", "stacking",
 }  # fmt: skip
 #: Pick something up that the next clause calls "it".
@@ -67,7 +68,7 @@ POLITE: Final = frozenset({
     "tomorrow", "man", "bro", "team", "this", "computer", "machine", "nurse", "colleague", "gosh",
     "afterwards", "additionally", "furthermore", "moreover", "also", "obviously", "clearly",
     "ideally", "importantly", "important", "bitte", "danke", "merci", "servus", "hallo", "moin",
-    "por", "favor", "por-favor", "all-right", "mkay", "okey", "k", "kk", "oki", "ty", "tx",
+    "sweetie", "young", "old", "lady", "ladies", "gentlemen", "children", "kids", "kiddo", "hon", "all-right", "mkay", "okey", "k", "kk", "oki", "ty", "tx",
 })  # fmt: skip
 #: Words of a heading, as in "the goal for my class: red on blue"; all else before a colon counts.
 HEADING: Final = frozenset({
@@ -165,7 +166,7 @@ OTHER_WORDS: Final = MORE_COLORS | {
     "there", "here", "these", "those", "which", "than", "only", "same", "different", "alone",
     "together", "either", "neither", "off", "nothing", "none", "everything", "something",
     "anything", "order", "him", "her", "his", "its", "base", "peak", "single", "half", "mean",
-    "meant", "wait",
+    "meant", "wait", "once", "when", "unless", "until", "whenever", "before", "after", "during",
 }  # fmt: skip
 #: "the left stack", "the middle place"; with what they are called.
 SIDES: Final = {

@@ -10,7 +10,7 @@ from .language import ARTICLES, HOLDS, JOINS, MUTE, NOUN_VERBS, TAKES, VERBS
 from .orders import order_at
 from .places import place_at
 from .terms import Words, number_of
-from .wordings import MERGED
+from .wordings import MERGED, PROVISOS
 
 _TOWERS: Final = frozenset({"tower", "stack", "pile"})
 _BUILDING: Final = VERBS | {"", "want", "need", "like", "please", "be", "is"}
@@ -40,6 +40,8 @@ def _at(words: Sequence[Words], before: str, removing: bool) -> tuple[list[Words
     """
     for length in range(min(_LONGEST, len(words)), 0, -1):
         texts = tuple(item.text for item in words[:length])
+        if texts in PROVISOS and before:
+            return [], length
         if texts in MERGED:
             offset, stop = words[0].offset, words[length - 1].stop
             return [Words(text, offset, stop) for text in MERGED[texts]], length

@@ -11,7 +11,7 @@ from scene_graph import PREDICATES
 
 from ..errors import InvalidGoalError
 from .corrections import corrected, joined
-from .courtesy import says_nothing, without_courtesy
+from .courtesy import is_talk, says_nothing, without_courtesy
 from .language import (
     CLEAR,
     EVERYONE,
@@ -101,12 +101,18 @@ def _written(text: str) -> Iterator[list[list[Words]]]:
             clauses = [place]
         elif clauses and colon and _is_place(clause):
             clauses[-1] = [*clauses[-1], *clause]  # "red: stack 1"
-        elif clause and not (part.mark == ":" and is_heading(clause)):
+        elif clause and not (part.mark == ":" and (is_heading(clause) or _announces(clause))):
             clauses.append(clause)
         colon = part.mark == ":"
         if part.end:
             yield clauses
             clauses = []
+
+
+def _announces(clause: Sequence[Words]) -> bool:
+    """Whether somebody says that a goal follows: "I picture two towers"."""
+    rest = [item for item in clause if item.text not in HEADING and item.text not in PLURALS]
+    return bool(rest) and is_talk(rest)
 
 
 def _finished(clauses: Sequence[list[Words]]) -> list[list[Words]]:

@@ -20,12 +20,12 @@ _CALL: Final = re.compile(r"([a-z_]+)\(([\w ]+)(?:,([\w ]+))?\)", re.IGNORECASE)
 _TOKEN: Final = re.compile(
     r"(?P<left_out>[:;]-?[)D(](?!\w)|[\"“”‘]|['’](?!\w)|(?<!\w)['’]"
     r"|(?<=\bmax)\.|(?<=\bmin)\.|(?<=\bno)\.(?=\s*\d)|(?<=\bnr)\.(?=\s*\d))"
-    r"|(?P<word>[^\W_](?:\w|-(?=\w)|['’](?=\w))*)|(?P<sign>[-=]+>|→|[<>≤≥]=|[≤≥]|[&+=#@])"
+    r"|(?P<word>[^\W_](?:\w|-(?=\w)|['’](?=\w))*)|(?P<sign>(?<!\w)!(?=\w)|[-=]+>|→|[<>≤≥]=|[≤≥]|[&+=#@])"
     r"|(?P<end>[.;!?…])|(?P<comma>[,:()/])|(?P<dash>[-–—]+(?=\s))|(?P<other>\S)",
     re.IGNORECASE,
 )
 #: What is written as a sign, as words.
-_SIGNS: Final = {"&": "and", "+": "and", "=": "is", "#": "number", "@": "in", "<=": "at-most",
+_SIGNS: Final = {"&": "and", "+": "and", "=": "is", "#": "number", "@": "in", "!": "not", "<=": "at-most",
                  ">=": "at-least", "≤": "at-most", "≥": "at-least"}  # fmt: skip
 #: What is written short, as words.
 _SHORT: Final = {"u": "you", "n": "and", "nd": "and", "w": "with", "ur": "your", "gonna": "going to",

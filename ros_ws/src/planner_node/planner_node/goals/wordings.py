@@ -113,7 +113,7 @@ _NOTHING: Final = _all_as(
         "right now", "for today", "if possible", "before next run", "before next trial",
         "for next run", "for next trial", "neither more nor less", "no more and no less",
         "no more no less", "sorry for trouble", "sorry for bother", "sorry to bother you",
-        "would you be so kind and", "as long as", "provided that", "order irrelevant",
+        "would you be so kind and", "first of all", "second of all", "order irrelevant",
         "order is irrelevant", "order is not important", "order not important",
         "order unimportant", "while you is at it", "while we is at it", "while you are at it",
         "while at it", "this time", "if you do not mind",
@@ -161,6 +161,8 @@ _UNASKED: Final = _all_as(
         )
     ),
 )  # fmt: skip
+#: Nothing behind what they are said of; in front they make a condition of what follows.
+PROVISOS: Final = frozenset({("as", "long", "as"), ("provided", "that")})
 #: Several words that stand for others, the longest first; looked for everywhere.
 MERGED: Final[Wordings] = {
     **_SIDE_BY_SIDE, **_NUMBERS, **_NOTHING, **_UNASKED, **_CORRECTIONS,
@@ -186,6 +188,10 @@ MERGED: Final[Wordings] = {
     ("have", "to"): ("must",),
     ("lets",): ("let",),
     ("avoid",): ("do", "not"),
+    ("under", "no", "circumstances"): ("not",),
+    ("at", "no", "time"): ("not",),
+    ("in", "no", "case"): ("not",),
+    ("on", "no", "account"): ("not",),
     ("refrain", "from"): ("do", "not"),
     **dict.fromkeys(
         (
