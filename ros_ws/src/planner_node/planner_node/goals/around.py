@@ -20,6 +20,8 @@ def asker(words: Sequence[Words]) -> int:
     asker = [index for index, item in enumerate(words) if item.text in {"i", "we"} | WANTS]
     if not asker or any(item.text == NEGATION for item in words[: asker[-1]]):
         return 0
+    if all(item.text in _SKIPPED | WANTS for item in words[asker[-1] :]):
+        return 0  # "red wants to be on blue"
     return asker[-1]
 
 

@@ -12,7 +12,7 @@ from collections.abc import Collection
 from typing import Final
 
 #: Verbs that are nouns too, where a number or a phrase follows: "stack 2 below red".
-NOUN_VERBS: Final = frozenset({"place", "stack", "position"})
+NOUN_VERBS: Final = frozenset({"place", "stack", "position", "pile"})
 #: Ask for the relation that follows.
 VERBS: Final = NOUN_VERBS | {
     "put", "move", "set", "get", "bring", "lay", "drop", "leave", "keep", "shift", "push",
@@ -22,7 +22,7 @@ VERBS: Final = NOUN_VERBS | {
     "create", "form", "construct", "assemble", "give", "show", "remove", "load", "deposit", "carry", "placing", "putting", "moving", "stacking",
 }  # fmt: skip
 #: Pick something up that the next clause calls "it".
-TAKES: Final = frozenset({"take", "grab", "lift", "pick", "fetch", "grasp", "get", "use"})
+TAKES: Final = frozenset({"take", "grab", "lift", "pick", "fetch", "grasp", "get", "use", "find", "locate"})
 #: Say of a block or place that nothing stands on it.
 CLEAR: Final = frozenset({"clear", "empty", "free", "bare", "vacant", "unoccupied", "uncovered"})
 #: Mean nothing for the goal wherever they stand.
@@ -91,6 +91,8 @@ NOTHING_ELSE: Final = frozenset({
     "nothing else", "no other", "no others", "no other block", "no other blocks", "none other",
 })  # fmt: skip
 EXCEPT: Final = "except"
+#: In front of what is not meant: "on blue instead of green".
+INSTEAD: Final = "instead-of"
 #: Between what was said and what is meant instead.
 CORRECTION: Final = "correction"
 #: Takes back what was said last; what follows is new.
@@ -166,7 +168,7 @@ OTHER_WORDS: Final = MORE_COLORS | {
     "there", "here", "these", "those", "which", "than", "only", "same", "different", "alone",
     "together", "either", "neither", "off", "nothing", "none", "everything", "something",
     "anything", "order", "him", "her", "his", "its", "base", "peak", "single", "half", "mean",
-    "meant", "wait", "once", "when", "unless", "until", "whenever", "before", "after", "during",
+    "lowest", "highest", "topmost", "uppermost", "bottommost", "meant", "wait", "once", "when", "unless", "until", "whenever", "before", "after", "during",
 }  # fmt: skip
 #: "the left stack", "the middle place"; with what they are called.
 SIDES: Final = {

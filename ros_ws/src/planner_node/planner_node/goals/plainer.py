@@ -13,7 +13,7 @@ from .described import by_place
 from .holdings import as_relation
 from .language import EXCEPT, MUTE, STEPS, TAKES, UPON, VERBS
 from .phrases import find
-from .relative import as_told_of
+from .relative import as_told_of, as_topped
 from .terms import Words, number_of
 
 _EDGES: Final = (
@@ -46,6 +46,12 @@ class Plain:
 def plainer(words: Sequence[Words]) -> Plain | None:
     """A clause with one turn less; None where it is plain already."""
     texts = [item.text for item in words]
+    each = texts.index("each") if "each" in texts[1:] else 0
+    if each and any(item.first == each + 1 for item in find(words, PREDICATES.phrases)):
+        return Plain([*words[:each], *words[each + 1 :]])  # "two blocks each in stack0 and stack1"
+    if texts == ["not", "directly"]:
+        start, end = words[0], words[1]
+        return Plain([start, Words("on", end.offset, end.stop), Words("it", end.stop, end.stop)])
     if len(words) > 1 and texts[0] in STEPS and texts[1] in VERBS | TAKES:
         return Plain(list(words[1:]))
     if "at-top-of" in texts[1:]:
@@ -59,7 +65,7 @@ def plainer(words: Sequence[Words]) -> Plain | None:
             where = words[at]
             phrase = [Words(side, where.offset, where.stop), Words("of", where.stop)]
             return Plain([*words[:at], *phrase, *words[at + 1 :]], adjacent=True)
-    told = _except_behind(words) or as_told_of(words) or _alone_behind(words) or _apart(words)
+    told = _except_behind(words) or as_told_of(words) or as_topped(words) or _alone_behind(words) or _apart(words)
     if told := told or _height(words):
         return Plain(told)
     if described := by_place(words):

@@ -8,8 +8,9 @@ from typing import Final
 
 from scene_graph import COLORS, PREDICATES, SHAPES
 
-from .language import MORE_COLORS, MUTE, NEGATION, NOUN_VERBS, NOUNS, PLURALS, SYNONYMS
+from .language import INSTEAD, MORE_COLORS, MUTE, NEGATION, NOUN_VERBS, NOUNS, PLURALS, SYNONYMS
 from .phrases import find
+from .run_on import is_name
 from .terms import Words
 
 _LOOKS: Final = frozenset(COLORS) | frozenset(SHAPES) | MORE_COLORS | SYNONYMS.keys()
@@ -73,3 +74,46 @@ def as_told_of(words: Sequence[Words]) -> list[Words] | None:
     if not any(text in _LOOKS for text in texts[behind:]):
         return None
     return [*words[behind:], *words[first:at]]
+
+
+_TOPPING: Final = frozenset({"cover", "top", "crown", "cap"})
+_TOPPED: Final = frozenset({"covered", "topped", "crowned", "capped"})
+
+
+def as_topped(words: Sequence[Words]) -> list[Words] | None:
+    """ "cover blue with red", "blue is topped by red" as "red on blue"; None for all else."""
+    texts = [item.text for item in words]
+    at = next((at for at, text in enumerate(texts) if at and text in ("with", "by")), 0)
+    if not at or NEGATION in texts or list(find(words, PREDICATES.phrases)):
+        return None
+    below, above = words[:at], list(words[at + 1 :])
+    if below[-1].text in _TOPPED:
+        below = below[:-1]
+    elif any(item.text in _TOPPING for item in below[:-1]):
+        verb = next(index for index, item in enumerate(below) if item.text in _TOPPING)
+        if any(item.text not in MUTE for item in below[:verb]):
+            return None
+        below = below[verb + 1 :]
+    else:
+        return None
+    kept = [item for item in below if item.text not in MUTE - NOUN_VERBS]
+    if not kept or not above:
+        return None
+    return [*above, Words("on", words[at].offset, words[at].stop), *kept]
+
+
+def without_contrast(clause: list[Words]) -> list[Words]:
+    """ "red on blue instead of on green", "it is red that goes on blue" as "red on blue"."""
+    texts = [item.text for item in clause]
+    that = next((at for at, text in enumerate(texts) if at > 2 and text in _RELATIVE), 0)
+    if texts[:2] == ["it", "is"] and that and is_name(clause[2:that]):
+        return [*clause[2:that], *clause[that + 1 :]]
+    if INSTEAD not in texts:
+        return clause
+    at = texts.index(INSTEAD)
+    phrase = next(find(clause[at + 1 :], PREDICATES.phrases), None)
+    if phrase is None or phrase.first:
+        return clause  # "red on blue instead of green": which of them is green instead of?
+    start = at + 1 + phrase.last
+    end = next((end for end in range(len(clause), start, -1) if is_name(clause[start:end])), 0)
+    return [*clause[:at], *clause[end:]] if end else clause

@@ -31,7 +31,7 @@ from .language import (
 from .merged import merged
 from .orders import ORDERS
 from .phrases import RIGHT_WORDS, find
-from .relative import with_looks
+from .relative import with_looks, without_contrast
 from .run_on import is_name, told_apart
 from .sides import with_sides
 from .terms import Words
@@ -119,7 +119,7 @@ def _finished(clauses: Sequence[list[Words]]) -> list[list[Words]]:
     """The clauses of a sentence, each with one relation or one name."""
     parts: list[list[Words]] = []
     denied = False
-    clauses = _with_only([with_looks(clause) for clause in with_sides(clauses)])
+    clauses = _with_only([with_looks(without_contrast(clause)) for clause in with_sides(clauses)])
     for clause in map(_with_exceptions, _with_order(clauses)):
         parts += _split_negation(clause, denied)
         # "nothing on red, green or blue"
@@ -152,7 +152,8 @@ def _place_heading(clause: list[Words]) -> list[Words] | None:
     """ "in stack 1" for "stack 1" or "a tower in stack 1" before a colon; None for all else."""
     if len(clause) == 1 and (side := _OUTERMOST.get(clause[0].text)):
         clause = [Words(f"{side} stack", clause[0].offset, clause[0].stop)]
-    clause = [item for item in clause if item.text not in (HEADING | MUTE) - NOUN_VERBS]
+    if not _is_place(clause):
+        clause = [item for item in clause if item.text not in (HEADING | MUTE) - NOUN_VERBS]
     if len(clause) > 1 and clause[0].text in ("in", "on", "at"):
         clause = clause[1:]
     if clause and Words(" ".join(item.text for item in clause), clause[0].offset).is_place:

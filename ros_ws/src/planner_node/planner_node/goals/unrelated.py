@@ -13,7 +13,7 @@ from .orders import ORDERS
 from .phrases import RIGHT_WORDS, find
 from .quantities import term_of
 from .said import Link, Said, no_relation
-from .terms import Term, Words
+from .terms import Kind, Term, Words
 
 
 def unrelated(text: str, words: list[Words]) -> Said:
@@ -27,7 +27,7 @@ def unrelated(text: str, words: list[Words]) -> Said:
     if not clear:
         clear = [item for item in words[:2] if meant(item.text, CLEAR | RIGHT_WORDS) in CLEAR]
     denied = any(item.text == NEGATION for item in words)
-    rest = [item for item in words if item not in clear]
+    rest = [item for item in words if item not in clear and item.text != NEGATION]
     start = max(verb_at_start(rest), asker(rest))
     name = without_ends(rest[start:])
     asks = [item for item in rest if item.text in MUTE and item not in name]
@@ -35,8 +35,17 @@ def unrelated(text: str, words: list[Words]) -> Said:
         name = name[2:]  # "leave the top of red free"
     if clear and not name and words[0].text == "which":
         name = words[:1]
+    while len(name) > 1 and name[-1].text in ("all", "both"):
+        name = without_ends(name[:-1])  # "should all be clear"
     if len(clear) == 1 and name and not denied:
         return Said(words, term_of(name), clears=True)
+    if len(clear) == 1 and name and denied:
+        # "stack 1 must not be empty"
+        term = term_of(name)
+        some = Term(Words("block", clear[0].offset, clear[0].stop), Kind.COUNT)
+        phrase = PREDICATES.phrases["in" if term.is_place else "on",]
+        if term.kind in (Kind.THE, Kind.EVERY):
+            return Said(words, some, ((phrase, False, term, clear[0]),), of_object=True)
     if clear or denied or not name:
         raise no_relation(text, words)
     return Said(words, term_of(name), asks=bool(asks))
@@ -89,6 +98,8 @@ def _taken(words: Sequence[Words]) -> list[Words]:
     for index, item in enumerate(words[:4]):
         if item.text in TAKES:
             name = list(words[index + 1 :])
+            source = next((at for at, one in enumerate(name) if at and one.text == "from"), 0)
+            name = name[:source] if source else name  # "take red from blue"
             return without_ends(name) if name else []
         if item.text not in MUTE and meant(item.text, MUTE | RIGHT_WORDS) not in MUTE:
             break

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Final
 
-from .language import CORRECTION, NUMBERS, TAKEN_BACK
+from .language import CORRECTION, INSTEAD, NUMBERS, TAKEN_BACK
 
 Wordings = dict[tuple[str, ...], tuple[str, ...]]
 
@@ -188,6 +188,19 @@ MERGED: Final[Wordings] = {
     ("have", "to"): ("must",),
     ("lets",): ("let",),
     ("avoid",): ("do", "not"),
+    ("instead", "of"): (INSTEAD,),
+    ("rather", "than"): (INSTEAD,),
+    ("as", "opposed", "to"): (INSTEAD,),
+    ("is", "what", "i", "want"): ("must", "be"),
+    ("is", "what", "i", "need"): ("must", "be"),
+    ("is", "what", "should", "be"): ("must", "be"),
+    **{("to", "its", side): (side, "of", "it") for side in ("left", "right")},
+    **{("on", "its", side): (side, "of", "it") for side in ("left", "right")},
+    **{
+        ("different", place, word): ("different", place, "as")
+        for place in ("stack", "tower", "pile", "place", "column")
+        for word in ("than", "from", "to")
+    },
     ("under", "no", "circumstances"): ("not",),
     ("at", "no", "time"): ("not",),
     ("in", "no", "case"): ("not",),
