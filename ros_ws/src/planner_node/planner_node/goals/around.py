@@ -11,7 +11,9 @@ from scene_graph import PREDICATES
 from .language import MUTE, NEGATION, NOUN_VERBS, NUMBERS, TAKES
 from .terms import Words
 
-WANTS: Final = frozenset({"want", "wants"})
+WANTS: Final = frozenset({
+    "want", "wants", "requires", "requested", "requests", "expects", "demands", "asked",
+})  # fmt: skip
 _SKIPPED: Final = MUTE | TAKES | {NEGATION}
 
 

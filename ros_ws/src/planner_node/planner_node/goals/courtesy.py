@@ -37,27 +37,28 @@ from .terms import Words
 #: May stand in front of "that" or "if" where these say only that a goal follows.
 _FRAME: Final = POLITE | {
     "i", "we", "you", "it", "would", "could", "should", "may", "might", "must", "can", "will",
-    "is", "be", "am", "are", "was", "make", "makes", "made", "see", "ensure", "check", "confirm",
-    "verify", "like", "love", "prefer", "want", "wish", "need", "think", "guess", "hope",
-    "suppose", "appreciate", "grateful", "glad", "happy", "pleased", "delighted", "nice", "great",
-    "lovely", "cool", "perfect", "wonderful", "fine", "kind", "enough", "possible", "important",
-    "necessary", "essential", "required", "most", "very", "really", "much", "also", "just",
-    "then", "to", "do", "me", "us", "my", "ask", "trouble", "mind", "bother", "too", "certain",
-    "such", "as", "by", "this", "that", "if", "out", "and", "arrange", "suggest", "request",
-    "permission", "a", "an", "needful", "hereby", "requested", "with", "your", "rather", "sorry", "please", "wonder", "wondering", "asking",
+    "is", "be", "am", "are", "was", "make", "makes", "made", "see", "ensure", "check",
+    "confirm", "verify", "like", "love", "prefer", "want", "wish", "need", "think", "guess",
+    "hope", "suppose", "appreciate", "grateful", "glad", "happy", "pleased", "delighted",
+    "nice", "great", "lovely", "cool", "perfect", "wonderful", "fine", "kind", "enough",
+    "possible", "important", "necessary", "essential", "required", "most", "very", "really",
+    "much", "also", "just", "then", "to", "do", "me", "us", "my", "ask", "trouble", "mind",
+    "bother", "too", "certain", "such", "as", "by", "this", "that", "if", "out", "and",
+    "arrange", "suggest", "request", "permission", "a", "an", "needful", "hereby", "requested",
+    "with", "your", "rather", "sorry", "please", "wonder", "wondering", "asking",
 }  # fmt: skip
 #: In front of "if", they make a wish of it; without them it asks, or is a condition.
 _WISHES: Final = frozenset({
     "like", "love", "prefer", "appreciate", "grateful", "glad", "happy", "pleased", "delighted",
-    "nice", "great", "lovely", "cool", "perfect", "wonderful", "good", "best", "kind", "obliged",
-    "appreciated",
+    "nice", "great", "lovely", "cool", "perfect", "wonderful", "good", "best", "kind",
+    "obliged", "appreciated",
 })  # fmt: skip
 #: May follow "if" where it is no condition: "if you can", "if it is not too much trouble".
 _IF: Final = frozenset({
-    "you", "can", "could", "would", "will", "please", "possible", "it", "is", "not", "too", "much",
-    "trouble", "do", "mind", "may", "might", "so", "like", "kind", "be", "ok", "okay", "at", "all",
-    "that", "convenient", "bother", "we", "i", "ask", "have", "time", "moment", "a", "as", "to",
-    "wish", "want", "good", "enough", "no", "the", "was", "were",
+    "you", "can", "could", "would", "will", "please", "possible", "it", "is", "not", "too",
+    "much", "trouble", "do", "mind", "may", "might", "so", "like", "kind", "be", "ok", "okay",
+    "at", "all", "that", "convenient", "bother", "we", "i", "ask", "have", "time", "moment",
+    "a", "as", "to", "wish", "want", "good", "enough", "no", "the", "was", "were",
 })  # fmt: skip
 
 #: Who talks, and to whom; what they say of themselves is no goal.
@@ -69,22 +70,25 @@ _CONTENT: Final = frozenset().union(
     *PREDICATES.phrases, COLORS, MORE_COLORS, SHAPES, SYNONYMS, NOUNS, PLURALS, PLACE_NOUNS,
     SIDES, NUMBERS, CLEAR, TAKES, IT, BOTH, EVERYONE,
     {NEGATION, CORRECTION, TAKEN_BACK, "there", "here", "not-asked-for", "only", "others"},
-) - {"of", "to", "over", "in", "at", "that", "this", "right", "one", "no", "get", "place"}  # fmt: skip
+) - {
+    "of", "to", "over", "in", "at", "that", "this", "right", "one", "no", "get", "place",
+}  # fmt: skip
 _NAMES: Final = frozenset(COLORS) | frozenset(SHAPES)
 #: They say more of the goal than that it follows, or the contrary.
 _TELLING: Final = frozenset({
-    "if", "unless", "when", "once", "until", "before", "while", "except", "without", "or", "hate",
-    "dislike", "avoid", "prevent", "refuse", "forbid", "stop", "doubt", "deny", "undo", "cancel",
-    "forget", "change", "changed", "mind", "opposite", "reverse", "swap", "exchange", "switch",
-    "mirror", "turn", "flip", "rotate", "order", "way", "back", "instead", "wrong", "mistake",
-    "joking", "kidding", "lied", "lying", "false", "ignore", "otherwise", "same", "different",
-    "each-other", "neither", "nor", "afraid", "worried", "fear", "bad", "terrible", "pretend",
-    "imagine", "anyone", "enough", "rather", "than", "last-one", "alone", "elsewhere", "apart",
+    "if", "unless", "when", "once", "until", "before", "while", "except", "without", "or",
+    "hate", "dislike", "avoid", "prevent", "refuse", "forbid", "stop", "doubt", "deny", "undo",
+    "cancel", "forget", "change", "changed", "mind", "opposite", "reverse", "swap", "exchange",
+    "switch", "mirror", "turn", "flip", "rotate", "order", "way", "back", "instead", "wrong",
+    "mistake", "joking", "kidding", "lied", "lying", "false", "ignore", "otherwise", "same",
+    "different", "each-other", "neither", "nor", "afraid", "worried", "fear", "bad", "terrible",
+    "pretend", "imagine", "anyone", "enough", "rather", "than", "last-one", "alone",
+    "elsewhere", "apart",
 })  # fmt: skip
 #: What they ask for is the goal, so that a word behind them that nobody knows may be part of it.
 _ASKING: Final = (VERBS | {
-    "want", "wants", "need", "needs", "like", "love", "prefer", "wish", "should", "shall", "must",
-    "would", "ask", "request", "suggest", "could",
+    "want", "wants", "need", "needs", "like", "love", "prefer", "wish", "should", "shall",
+    "must", "would", "ask", "request", "suggest", "could",
 }) - {"have", "let", "make"}  # fmt: skip
 #: Begin the goal behind what is said of it.
 _COMPLEMENTS: Final = frozenset({"that", "until"})
@@ -117,7 +121,7 @@ def _is_name(text: str) -> bool:
 
 
 def _without_frame(words: list[Words]) -> list[Words]:
-    """Without "what I am trying to say is that", "all I want is for … to", "see whether you can"."""
+    """Without "what I am trying to say is that", "all I want is for", "see whether you can"."""
     texts = [item.text for item in words]
     for at in range(len(words) - 2, -1, -1):
         # "all I want is …"
@@ -130,7 +134,7 @@ def _without_frame(words: list[Words]) -> list[Words]:
         if texts[at] in _COMPLEMENTS and _is_of_all(texts, at):
             return words[at + 1 :]
         if texts[at] == "that" and is_talk(said):
-            # What somebody says or wants is a goal, what he knows or hates is one if it "should" be.
+            # What somebody says or wants is a goal; what he knows is one where it "should" be.
             spoken = all(item.text in _SAYING | _PERSONS | _FRAME | MUTE for item in said)
             if spoken or any(text in _MODALS for text in texts[at + 1 :]):
                 return words[at + 1 :]

@@ -18,32 +18,37 @@ VERBS: Final = NOUN_VERBS | {
     "put", "move", "set", "get", "bring", "lay", "drop", "leave", "keep", "shift", "push",
     "slide", "transfer", "arrange", "build", "balance", "sit", "make", "let", "have",
     "relocate", "stick", "add", "pop", "plop", "plonk", "chuck", "dump", "shove", "hoist",
-    "distribute", "rearrange", "spread", "organize", "organise", "reorganize",
-    "create", "form", "construct", "assemble", "give", "show", "remove", "load", "deposit", "carry", "placing", "putting", "moving", "stacking",
+    "distribute", "rearrange", "spread", "organize", "organise", "reorganize", "create", "form",
+    "construct", "assemble", "give", "show", "remove", "load", "deposit", "carry", "placing",
+    "putting", "moving", "stacking",
 }  # fmt: skip
 #: Pick something up that the next clause calls "it".
-TAKES: Final = frozenset({"take", "grab", "lift", "pick", "fetch", "grasp", "get", "use", "find", "locate"})
+TAKES: Final = frozenset(
+    {"take", "grab", "lift", "pick", "fetch", "grasp", "get", "use", "find", "locate"}
+)
 #: Say of a block or place that nothing stands on it.
 CLEAR: Final = frozenset({"clear", "empty", "free", "bare", "vacant", "unoccupied", "uncovered"})
 #: Mean nothing for the goal wherever they stand.
 MUTE: Final = VERBS | {
-    "is", "are", "be", "being", "stays", "stay", "sits", "sitting", "stands", "stand", "standing",
-    "rests", "resting", "goes", "go", "going", "lies", "lie", "lying", "placed", "moved",
-    "stacked", "located", "positioned", "should", "shall", "must", "has", "needs", "need",
-    "ought", "would", "will", "wants", "want", "come", "comes", "belongs", "belong", "ends",
-    "gets", "please", "kindly", "i", "we", "you", "me", "us", "like", "love", "prefer", "now",
-    "first", "finally", "also", "just", "simply", "so", "that", "there", "hey", "hi", "hello",
-    "robot", "ok", "okay", "thanks", "thx", "sure", "ensure", "were", "still", "again", "too",
-    "nice", "great", "your", "task", "goal", "next", "could", "wish", "maybe", "perhaps",
+    "is", "are", "be", "being", "stays", "stay", "sits", "sitting", "stands", "stand",
+    "standing", "rests", "resting", "goes", "go", "going", "lies", "lie", "lying", "placed",
+    "moved", "stacked", "located", "positioned", "should", "shall", "must", "has", "needs",
+    "need", "ought", "would", "will", "wants", "want", "come", "comes", "belongs", "belong",
+    "ends", "gets", "please", "kindly", "i", "we", "you", "me", "us", "like", "love", "prefer",
+    "now", "first", "finally", "also", "just", "simply", "so", "that", "there", "hey", "hi",
+    "hello", "robot", "ok", "okay", "thanks", "thx", "sure", "ensure", "were", "still", "again",
+    "too", "nice", "great", "your", "task", "goal", "next", "could", "wish", "maybe", "perhaps",
     "somewhere", "sir", "dear", "afterwards", "after", "quickly", "carefully", "gently", "do",
-    "does", "did", "try", "may", "might", "well", "as", "down", "anywhere", "today", "pls", "plz",
-    "pleas", "was", "secondly", "thirdly", "lastly", "together", "instead", "itself",
+    "does", "did", "try", "may", "might", "well", "as", "down", "anywhere", "today", "pls",
+    "plz", "pleas", "was", "secondly", "thirdly", "lastly", "together", "instead", "itself",
     "themselves", "ask", "trouble", "think", "guess", "suppose", "see", "check", "confirm",
-    "verify", "am", "er", "erm", "um", "uh", "uhm", "really", "certain", "kind", "enough", "asap",
-    "quick", "pray", "rest", "suggest", "request", "strictly", "basically", "literally",
-    "definitely", "absolutely", "always", "completely", "totally", "ideally", "actual", "needing",
-    "slowly", "careful", "been", "found", "end", "kept", "stood", "sat", "put", "seen", "cheers",
-    "appreciate", "good", "grateful", "possible",
+    "verify", "am", "er", "erm", "um", "uh", "uhm", "really", "certain", "kind", "enough",
+    "asap", "quick", "pray", "rest", "suggest", "request", "strictly", "basically", "literally",
+    "definitely", "absolutely", "always", "completely", "totally", "ideally", "actual",
+    "needing", "slowly", "careful", "been", "found", "end", "kept", "stood", "sat", "put",
+    "seen", "cheers", "appreciate", "good", "grateful", "possible", "my", "our", "job", "plan",
+    "aim", "mission", "objective", "delighted", "happy", "glad", "pleased", "gimme", "yo",
+    "bro", "dude", "better", "already",
 }  # fmt: skip
 #: Join relations as a comma does.
 JOINS: Final = frozenset(
@@ -59,16 +64,18 @@ POLITE: Final = frozenset({
     "day", "cheers", "greetings", "yours", "sincerely", "faithfully", "regards", "best", "bye",
     "goodbye", "obliged", "appreciated", "welcome", "madam", "friend", "buddy", "mate", "ta",
     "ever", "thank", "again", "there", "asap", "quick", "quickly", "carefully", "gently",
-    "slowly", "careful", "everyone", "pray", "love", "sweetheart", "darling", "honey", "monsieur",
-    "mister", "miss", "boss", "pal", "dude", "guys", "folks", "professor", "doctor", "pardon",
-    "excuse", "many", "yes", "yeah", "yep", "very", "much", "advance", "time", "listen", "look",
-    "remember", "honestly", "frankly", "basically", "next", "finally", "lastly", "first", "ultimately",
-    "firstly", "secondly", "thirdly", "then", "anyway", "anyways", "essentially", "note",
-    "attention", "umm", "hmmm", "eh", "ha", "haha", "lol", "wow", "yay", "today", "tonight",
-    "tomorrow", "man", "bro", "team", "this", "computer", "machine", "nurse", "colleague", "gosh",
-    "afterwards", "additionally", "furthermore", "moreover", "also", "obviously", "clearly",
-    "ideally", "importantly", "important", "bitte", "danke", "merci", "servus", "hallo", "moin",
-    "sweetie", "young", "old", "lady", "ladies", "gentlemen", "children", "kids", "kiddo", "hon", "all-right", "mkay", "okey", "k", "kk", "oki", "ty", "tx",
+    "slowly", "careful", "everyone", "pray", "love", "sweetheart", "darling", "honey",
+    "monsieur", "mister", "miss", "boss", "pal", "dude", "guys", "folks", "professor", "doctor",
+    "pardon", "excuse", "many", "yes", "yeah", "yep", "very", "much", "advance", "time",
+    "listen", "look", "remember", "honestly", "frankly", "basically", "next", "finally",
+    "lastly", "first", "ultimately", "firstly", "secondly", "thirdly", "then", "anyway",
+    "anyways", "essentially", "note", "attention", "umm", "hmmm", "eh", "ha", "haha", "lol",
+    "wow", "yay", "today", "tonight", "tomorrow", "man", "bro", "team", "this", "computer",
+    "machine", "nurse", "colleague", "gosh", "afterwards", "additionally", "furthermore",
+    "moreover", "also", "obviously", "clearly", "ideally", "importantly", "important", "bitte",
+    "danke", "merci", "servus", "hallo", "moin", "sweetie", "young", "old", "lady", "ladies",
+    "gentlemen", "children", "kids", "kiddo", "hon", "all-right", "mkay", "okey", "k", "kk",
+    "oki", "ty", "tx",
 })  # fmt: skip
 #: Words of a heading, as in "the goal for my class: red on blue"; all else before a colon counts.
 HEADING: Final = frozenset({
@@ -76,9 +83,9 @@ HEADING: Final = frozenset({
     "arrangement", "setup", "configuration", "order", "plan", "target", "final", "my", "our",
     "for", "class", "demo", "experiment", "lesson", "a", "this", "one", "new", "layout",
     "exercise", "of", "state", "sort", "like", "follows", "following", "them", "required",
-    "desired", "wanted", "end", "result", "towers", "piles", "two", "step", "part",
-    "condition", "trial", "phase", "number", "nice", "high", "big", "tall", "little", "small",
-    "satisfy", "be", "request", "instructions", "instruction",
+    "desired", "wanted", "end", "result", "towers", "piles", "two", "step", "part", "condition",
+    "trial", "phase", "number", "nice", "high", "big", "tall", "little", "small", "satisfy",
+    "be", "request", "instructions", "instruction",
 })  # fmt: skip
 #: Begin what says of all of a kind; "but" behind them leaves some out.
 EVERYONE: Final = frozenset({
@@ -133,13 +140,14 @@ CARRIES: Final = frozenset({"carry", "carries", "bear", "bears", "support", "hol
 
 #: Fit every object.
 NOUNS: Final = frozenset({
-    "block", "object", "one", "thing", "piece", "item", "brick", "part", "element", "thingy",
-    "klotz", "stone", "toy", "guy",
+    "block", "object", "one", "thing", "piece", "item", "brick", "part", "element",
+    "thingy", "klotz", "stone", "toy", "guy",
 })  # fmt: skip
 #: Of several, what they are called one by one.
 PLURALS: Final = {
     "blocks": "block", "objects": "object", "ones": "one", "things": "thing", "pieces": "piece",
-    "items": "item", "bricks": "brick", "parts": "part", "elements": "element", "thingies": "thingy",
+    "items": "item", "bricks": "brick", "parts": "part", "elements": "element",
+    "thingies": "thingy",
     "stones": "stone", "toys": "toy", "guys": "guy",
     "boxes": "box", "cubes": "cube", "cylinders": "cylinder",
     "spheres": "sphere", "balls": "ball", "prisms": "prism", "roofs": "roof", "cuboids": "cuboid",
@@ -163,12 +171,13 @@ MORE_COLORS: Final = frozenset({
 })  # fmt: skip
 #: Words that are right as they are, so that they are not taken for others with a typo.
 OTHER_WORDS: Final = MORE_COLORS | {
-    "light", "dark", "pale", "bright", "deep",
-    "tin", "bed", "glue", "line", "back", "ink", "pine", "bin", "can", "them", "they", "their",
-    "there", "here", "these", "those", "which", "than", "only", "same", "different", "alone",
-    "together", "either", "neither", "off", "nothing", "none", "everything", "something",
-    "anything", "order", "him", "her", "his", "its", "base", "peak", "single", "half", "mean",
-    "lowest", "highest", "topmost", "uppermost", "bottommost", "meant", "wait", "once", "when", "unless", "until", "whenever", "before", "after", "during",
+    "light", "dark", "pale", "bright", "deep", "tin", "bed", "glue", "line", "back", "ink",
+    "pine", "bin", "can", "them", "they", "their", "there", "here", "these", "those", "which",
+    "than", "only", "same", "different", "alone", "together", "either", "neither", "off",
+    "nothing", "none", "everything", "something", "anything", "order", "him", "her", "his",
+    "its", "base", "peak", "single", "half", "mean", "lowest", "highest", "topmost",
+    "uppermost", "bottommost", "meant", "wait", "once", "when", "unless", "until", "whenever",
+    "before", "after", "during",
 }  # fmt: skip
 #: "the left stack", "the middle place"; with what they are called.
 SIDES: Final = {

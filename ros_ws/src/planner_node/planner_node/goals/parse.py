@@ -14,7 +14,7 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
-from scene_graph import PREDICATES, UP, Phrase
+from scene_graph import ABOVE, PREDICATES, UP, Phrase
 
 from ..errors import InvalidGoalError
 from .clauses import read_clause
@@ -65,7 +65,7 @@ class _Reader:
     def read(self, sentence: Sequence[Said]) -> None:
         """Adds the relations of a sentence."""
         self._before = len(self._told.relations)
-        said = self._without_rows(turned_at_comma(sentence))
+        said = self._without_rows(_in_place(turned_at_comma(sentence)))
         waiting: list[Said] = []
         subjects: list[Term] = []
         last: Said | None = None
@@ -249,3 +249,16 @@ def _of_topic(clause: Said, named: list[Term]) -> tuple[Said, list[Term]]:
     if object_.words.text not in IT or named[0].kind is not Kind.THE:
         return clause, named
     return replace(clause, links=((phrase, denied, named[0], written),)), []
+
+
+def _in_place(said: list[Said]) -> list[Said]:
+    """ "in stack 0, red on blue" with the place said of red as well."""
+    if len(said) != 2 or said[1].subject is None or len(said[1].links) != 1:
+        return said
+    place = place_of(said[0])
+    phrase, denied, object_, _ = said[1].links[0]
+    tower = phrase.predicate.name in (UP, ABOVE) and not denied and not object_.is_place
+    if place is None or said[0].edge or said[1].edge or not tower:
+        return said
+    inside = PREDICATES.phrases["in",]
+    return [said[1], replace(said[1], links=((inside, *place[1:]),))]

@@ -65,9 +65,9 @@ def plainer(words: Sequence[Words]) -> Plain | None:
             where = words[at]
             phrase = [Words(side, where.offset, where.stop), Words("of", where.stop)]
             return Plain([*words[:at], *phrase, *words[at + 1 :]], adjacent=True)
-    told = _except_behind(words) or as_told_of(words) or as_topped(words) or _alone_behind(words) or _apart(words)
-    if told := told or _height(words):
-        return Plain(told)
+    for turn in (_except_behind, as_told_of, as_topped, _alone_behind, _apart, _height):
+        if told := turn(words):
+            return Plain(told)
     if described := by_place(words):
         return Plain(described[0], edge=described[1])
     if texts[-1] in _NEIGHBOURS and len(texts) > 1:

@@ -90,7 +90,7 @@ def _resolve_term(term: Term, names: Sequence[str], stack_count: int | None) -> 
     """The one that is meant, or all that fit where it says how many of them."""
     if term.kind is Kind.THE:
         return (resolve_name(term.words, names, stack_count),)
-    left_out = {name for one in term.but for name in _resolve_term(one, names, stack_count)}
+    left_out = {name for one in term.but for name in _left_out(one, term, names, stack_count)}
     if term.is_every_place:
         if stack_count is None:
             raise unknown_place(term.words, None)
@@ -107,6 +107,19 @@ def _resolve_term(term: Term, names: Sequence[str], stack_count: int | None) -> 
             f"'{term.words.text}': {', '.join(found)}; name the ones that are meant",
         )
     return found
+
+
+def _left_out(
+    term: Term, every: Term, names: Sequence[str], stack_count: int | None
+) -> tuple[str, ...]:
+    """Those that "every box except the red one" leaves out: they are boxes too, if any fit."""
+    if not every.is_place:
+        try:
+            group = _fitting(every.words, names, stack_count)
+            return _resolve_term(term, group, stack_count)
+        except UnknownObjectError:
+            pass
+    return _resolve_term(term, names, stack_count)
 
 
 def _meanings(

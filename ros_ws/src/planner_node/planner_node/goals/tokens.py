@@ -25,12 +25,16 @@ _TOKEN: Final = re.compile(
     re.IGNORECASE,
 )
 #: What is written as a sign, as words.
-_SIGNS: Final = {"&": "and", "+": "and", "=": "is", "#": "number", "@": "in", "!": "not", "<=": "at-most",
-                 ">=": "at-least", "≤": "at-most", "≥": "at-least"}  # fmt: skip
+_SIGNS: Final = {
+    "&": "and", "+": "and", "=": "is", "#": "number", "@": "in", "!": "not", "<=": "at-most",
+    ">=": "at-least", "≤": "at-most", "≥": "at-least",
+}  # fmt: skip
 #: What is written short, as words.
-_SHORT: Final = {"u": "you", "n": "and", "nd": "and", "w": "with", "ur": "your", "gonna": "going to",
-                 "wanna": "want to", "gotta": "must", "im": "i am", "ive": "i have",
-                 "id": "i would", "mit": "with", "und": "and", "auf": "on"}  # fmt: skip
+_SHORT: Final = {
+    "u": "you", "n": "and", "nd": "and", "w": "with", "ur": "your", "gonna": "going to",
+    "wanna": "want to", "gotta": "must", "im": "i am", "ive": "i have", "id": "i would",
+    "mit": "with", "und": "and", "auf": "on",
+}  # fmt: skip
 #: Ask about what is there, at the start of a question.
 _ASKING: Final = frozenset({
     "is", "are", "was", "were", "does", "did", "has", "have", "what", "which", "where", "who",
@@ -75,6 +79,8 @@ def parts_of(text: str) -> Iterator[Part]:
             if first and part.words:
                 _asks = part.words[0] if part.words[0].text in _ASKING else None
                 first = False
+            if [item.text for item in part.words] == ["how", "about"]:
+                _asks = None
         elif sign := match["sign"]:
             part.words.append(Words(_SIGNS.get(sign, "to"), match.start(), match.end()))
         elif match["end"]:

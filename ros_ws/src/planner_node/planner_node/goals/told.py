@@ -105,7 +105,7 @@ class Told:
                 )
         carried = clause.subject is None
         if carried and subjects and all(term.kind is Kind.NO for term in subjects):
-            links = tuple((phrase, False, *rest) for phrase, _, *rest in links)
+            links = tuple((phrase, False, other, said) for phrase, _, other, said in links)
         for phrase, denied, object_, written in links:
             if object_.words.text in EACH_OTHER:
                 if len(subjects) == 1 and subjects[0].exact == 2:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import permutations
 from typing import Final
 
 from .language import CORRECTION, INSTEAD, NUMBERS, TAKEN_BACK
@@ -116,7 +117,8 @@ _NOTHING: Final = _all_as(
         "would you be so kind and", "first of all", "second of all", "order irrelevant",
         "order is irrelevant", "order is not important", "order not important",
         "order unimportant", "while you is at it", "while we is at it", "while you are at it",
-        "while at it", "this time", "if you do not mind",
+        "while at it", "this time", "here is what i want", "here is what i need",
+        "if you do not mind",
     ),
 )  # fmt: skip
 #: People who correct themselves.
@@ -137,8 +139,9 @@ _CORRECTIONS: Final = _all_as(
         for what in ("that", "it", "this", "last one")
     ),
 )  # fmt: skip
-_REST: Final = frozenset({"rest", "others", "remainder", "remaining blocks", "other blocks", "remaining ones", "other ones",
-                          "everything else", "all others"})  # fmt: skip
+_REST: Final = frozenset({"rest", "others", "remainder", "remaining blocks", "other blocks",
+"remaining ones",
+                          "other ones", "everything else", "all others"})  # fmt: skip
 #: What is not asked for.
 _UNASKED: Final = _all_as(
     (),
@@ -194,6 +197,15 @@ MERGED: Final[Wordings] = {
     ("is", "what", "i", "want"): ("must", "be"),
     ("is", "what", "i", "need"): ("must", "be"),
     ("is", "what", "should", "be"): ("must", "be"),
+    ("is", "what", "i", "would", "like"): ("must", "be"),
+    ("back", "on"): ("on",),
+    ("back", "onto"): ("on",),
+    ("back", "in"): ("in",),
+    **{
+        (one, "and", other, noun): (f"{one} stack", "and", f"{other} stack")
+        for one, other in permutations(("left", "middle", "right"), 2)
+        for noun in ("stack", "stacks", "pile", "piles", "tower", "towers", "place", "places")
+    },
     **{("to", "its", side): (side, "of", "it") for side in ("left", "right")},
     **{("on", "its", side): (side, "of", "it") for side in ("left", "right")},
     **{
