@@ -48,7 +48,7 @@ MUTE: Final = VERBS | {
     "needing", "slowly", "careful", "been", "found", "end", "kept", "stood", "sat", "put",
     "seen", "cheers", "appreciate", "good", "grateful", "possible", "my", "our", "job", "plan",
     "aim", "mission", "objective", "delighted", "happy", "glad", "pleased", "gimme", "yo",
-    "bro", "dude", "better", "already",
+    "bro", "dude", "better",
 }  # fmt: skip
 #: Join relations as a comma does.
 JOINS: Final = frozenset(
@@ -97,6 +97,8 @@ OTHERS: Final = frozenset({"everything else", "all others", "others", "rest", "o
 NOTHING_ELSE: Final = frozenset({
     "nothing else", "no other", "no others", "no other block", "no other blocks", "none other",
 })  # fmt: skip
+#: Says what should have been.
+BYGONE: Final = "bygone"
 EXCEPT: Final = "except"
 #: In front of what is not meant: "on blue instead of green".
 INSTEAD: Final = "instead-of"

@@ -9,7 +9,7 @@ from typing import Final
 from .language import ARTICLES, HOLDS, JOINS, MUTE, NOUN_VERBS, TAKES, VERBS
 from .orders import order_at
 from .places import place_at
-from .terms import Words, number_of
+from .terms import Words, names_place, number_of
 from .wordings import MERGED, PROVISOS
 
 _TOWERS: Final = frozenset({"tower", "stack", "pile"})
@@ -78,9 +78,7 @@ def _away(words: Sequence[Words], removing: bool) -> tuple[list[Words], int] | N
     if not used or used == len(words):
         return None
     behind = words[used : used + 3]
-    named = place_at(behind) or any(
-        Words(" ".join(item.text for item in behind[:last]), 0).is_place for last in (1, 2)
-    )
+    named = place_at(behind) or any(names_place(behind[:last]) for last in (1, 2))
     offset, stop = words[0].offset, words[used - 1].stop
     inside = "in" if named else "on"
     return [Words("not", offset, stop), Words(inside, offset, stop)], used

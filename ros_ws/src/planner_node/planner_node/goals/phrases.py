@@ -133,3 +133,8 @@ def find(words: Sequence[Words], phrases: _Phrases) -> Iterator[Found]:
                 break
         else:
             index += 1
+
+
+def has_phrase(words: Sequence[Words]) -> bool:
+    """Whether there is a phrase among the words."""
+    return next(find(words, PREDICATES.phrases), None) is not None

@@ -14,7 +14,7 @@ from .holdings import as_relation
 from .language import EXCEPT, MUTE, STEPS, TAKES, UPON, VERBS
 from .phrases import find
 from .relative import as_told_of, as_topped
-from .terms import Words, number_of
+from .terms import Words, names_place, number_of
 
 _EDGES: Final = (
     ("at", "top"), ("at", "very", "top"), ("on", "very", "top"), ("at", "bottom"),
@@ -124,7 +124,7 @@ def _height(words: Sequence[Words]) -> list[Words] | None:
         return None
     for last in (4, 3):
         place, number = words[2:last], list(words[last:])
-        if not Words(" ".join(item.text for item in place), 0).is_place:
+        if not names_place(place):
             continue
         while number and number[0].text in MUTE:
             number.pop(0)

@@ -33,7 +33,10 @@ def _ends(clause: Sequence[Words]) -> bool:
 
 
 def _placed(clause: list[Words], several: bool) -> list[Words]:
-    counted = any(is_quantity(item.text) or item.text in EVERYONE for item in clause[:-2])
+    # "move all blocks to the right" may mean by one place.
+    counted = clause[-2:][0].text != "to" and any(
+        is_quantity(item.text) or item.text in EVERYONE for item in clause[:-2]
+    )
     if not _ends(clause) or not (several or counted):
         return clause
     before, side = clause[-2:]

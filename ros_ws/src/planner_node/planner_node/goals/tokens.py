@@ -21,7 +21,7 @@ _TOKEN: Final = re.compile(
     r"(?P<left_out>[:;]-?[)D(](?!\w)|[\"“”‘]|['’](?!\w)|(?<!\w)['’]"
     r"|(?<=\bmax)\.|(?<=\bmin)\.|(?<=\bno)\.(?=\s*\d)|(?<=\bnr)\.(?=\s*\d))"
     r"|(?P<word>[^\W_](?:\w|-(?=\w)|['’](?=\w))*)|(?P<sign>(?<!\w)!(?=\w)|[-=]+>|→|[<>≤≥]=|[≤≥]|[&+=#@])"
-    r"|(?P<end>[.;!?…])|(?P<comma>[,:()/])|(?P<dash>[-–—]+(?=\s))|(?P<other>\S)",
+    r"|(?P<end>[.;!?…])|(?P<comma>[,:()]|(?<!\d)/(?!\d))|(?P<dash>[-–—]+(?=\s))|(?P<other>\S)",
     re.IGNORECASE,
 )
 #: What is written as a sign, as words.

@@ -103,6 +103,8 @@ class Told:
                     written.offset,
                     written.text,
                 )
+        if len(links) > 1 and any(term.kind is Kind.COUNT and term.bare for term in subjects):
+            raise unclear(subjects[0])  # "the one on red should be on blue"
         carried = clause.subject is None
         if carried and subjects and all(term.kind is Kind.NO for term in subjects):
             links = tuple((phrase, False, other, said) for phrase, _, other, said in links)

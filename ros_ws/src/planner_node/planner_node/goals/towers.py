@@ -10,8 +10,8 @@ from typing import Final
 from scene_graph import PREDICATES
 
 from .language import MUTE, NEGATION, NOUN_VERBS, NOUNS, OPENINGS
-from .phrases import find
-from .terms import Words
+from .phrases import find, has_phrase
+from .terms import Words, names_place
 
 #: Where in a tower, from the bottom; behind a name or in front of it.
 _LEVELS: Final = {
@@ -126,7 +126,7 @@ def _block(clause: Sequence[Words]) -> _Block | None:
         return None
     for last in (2, 1):
         place = list(clause[-last:])
-        if texts[-last - 1 : -last] == ("of",) and _is_place(place):
+        if texts[-last - 1 : -last] == ("of",) and names_place(place):
             block = _block(clause[: -last - 1])
             return block and (None if block.level is None else replace(block, place=place))
     for length in range(min(_LONGEST, len(texts) - 1), 0, -1):
@@ -141,11 +141,7 @@ def _block(clause: Sequence[Words]) -> _Block | None:
 
 
 def _has_phrase(block: _Block | None) -> bool:
-    return block is not None and any(True for _ in find(block.name, PREDICATES.phrases))
-
-
-def _is_place(words: Sequence[Words]) -> bool:
-    return Words(" ".join(item.text for item in words), 0).is_place
+    return block is not None and has_phrase(block.name)
 
 
 def _heading_before(words: list[Words]) -> tuple[list[Words], list[Words]]:

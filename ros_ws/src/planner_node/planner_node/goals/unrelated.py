@@ -13,7 +13,7 @@ from .orders import ORDERS
 from .phrases import RIGHT_WORDS, find
 from .quantities import term_of
 from .said import Link, Said, no_relation
-from .terms import Kind, Term, Words
+from .terms import Kind, Term, Words, names_place
 
 
 def unrelated(text: str, words: list[Words]) -> Said:
@@ -74,23 +74,19 @@ def tower_heading(text: str, words: Sequence[Words], order: Words) -> Said:
     if len(found) == 1:
         # A place; behind it there may be the first name.
         behind = rest[found[0].last :]
-        place = next((behind[:last] for last in (2, 1) if _is_place(behind[:last])), None)
+        place = next((behind[:last] for last in (2, 1) if names_place(behind[:last])), None)
         if place is None:
             raise no_relation(text, words)
         links = ((found[0].phrase, False, term_of(place), order),)
         rest = [*rest[: found[0].first], *behind[len(place) :]]
     elif found:
         raise no_relation(text, words)
-    elif stop := next((last for last in (2, 1) if _is_place(rest[:last])), 0):
+    elif stop := next((last for last in (2, 1) if names_place(rest[:last])), 0):
         # "column 1 from bottom to top"
         phrase = PREDICATES.phrases["in",]
         links, rest = ((phrase, False, term_of(rest[:stop]), order),), rest[stop:]
     subject = term_of(rest) if rest else None
     return Said(words, subject, links, order=ORDERS[order.text])
-
-
-def _is_place(words: Sequence[Words]) -> bool:
-    return bool(words) and term_of(words).is_place
 
 
 def _taken(words: Sequence[Words]) -> list[Words]:

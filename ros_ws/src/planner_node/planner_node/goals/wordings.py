@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from itertools import permutations
 from typing import Final
 
-from .language import CORRECTION, INSTEAD, NUMBERS, TAKEN_BACK
+from .language import BYGONE, CORRECTION, INSTEAD, NUMBERS, TAKEN_BACK
 
 Wordings = dict[tuple[str, ...], tuple[str, ...]]
 
@@ -198,6 +198,8 @@ MERGED: Final[Wordings] = {
     ("is", "what", "i", "need"): ("must", "be"),
     ("is", "what", "should", "be"): ("must", "be"),
     ("is", "what", "i", "would", "like"): ("must", "be"),
+    # What should have been is no goal.
+    **{("have", done): (BYGONE,) for done in ("put", "placed", "moved", "stacked", "been")},
     ("back", "on"): ("on",),
     ("back", "onto"): ("on",),
     ("back", "in"): ("in",),
@@ -229,6 +231,7 @@ MERGED: Final[Wordings] = {
             ("not", "necessary"),
             ("not", "required"),
             ("no", "need", "for"),
+            ("no", "need", "that"),
             ("no", "need", "to"),
             ("not", "mind"),
             ("not", "care"),
