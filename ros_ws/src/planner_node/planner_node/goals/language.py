@@ -46,7 +46,8 @@ MUTE: Final = VERBS | {
     "asap", "quick", "pray", "rest", "suggest", "request", "strictly", "basically", "literally",
     "definitely", "absolutely", "always", "completely", "totally", "ideally", "actual",
     "needing", "slowly", "careful", "been", "found", "end", "kept", "stood", "sat", "put",
-    "seen", "cheers", "appreciate", "good", "grateful", "possible", "my", "our", "job", "plan",
+    "seen", "cheers", "appreciate", "good", "grateful", "possible", "my", "our", "bitte", "job",
+    "plan",
     "aim", "mission", "objective", "delighted", "happy", "glad", "pleased", "gimme", "yo",
     "bro", "dude", "better",
 }  # fmt: skip
@@ -159,7 +160,9 @@ PLURALS: Final = {
 #: Other words for a shape or a colour, where no object is called so.
 SYNONYMS: Final = {
     "cube": "box", "cuboid": "box", "bx": "box", "boks": "box", "ball": "sphere", "roof": "prism",
-    "wedge": "prism", "gray": "grey", "violet": "purple",
+    "wedge": "prism", "tube": "cylinder",
+    "pipe": "cylinder", "barrel": "cylinder", "drum": "cylinder", "orb": "sphere",
+    "gray": "grey", "violet": "purple",
 }  # fmt: skip
 NUMBERS: Final = {
     "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7,
