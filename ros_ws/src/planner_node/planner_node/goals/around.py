@@ -11,7 +11,9 @@ from scene_graph import PREDICATES
 from .language import MUTE, NEGATION, NOUN_VERBS, NUMBERS, TAKES
 from .terms import Words
 
-WANTS: Final = frozenset({"want", "wants"})
+WANTS: Final = frozenset({
+    "want", "wants", "requires", "requested", "requests", "expects", "demands", "asked",
+})  # fmt: skip
 _SKIPPED: Final = MUTE | TAKES | {NEGATION}
 
 
@@ -20,6 +22,8 @@ def asker(words: Sequence[Words]) -> int:
     asker = [index for index, item in enumerate(words) if item.text in {"i", "we"} | WANTS]
     if not asker or any(item.text == NEGATION for item in words[: asker[-1]]):
         return 0
+    if all(item.text in _SKIPPED | WANTS for item in words[asker[-1] :]):
+        return 0  # "red wants to be on blue"
     return asker[-1]
 
 

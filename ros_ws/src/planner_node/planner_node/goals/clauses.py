@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from scene_graph import COLORS, PREDICATES, SHAPES
+from scene_graph import COLORS, SHAPES
 
 from ..errors import InvalidGoalError
 from .around import WANTS, asker, names_a_place, verb_at_start, without_ends
 from .language import (
+    BYGONE,
     CLEAR,
     IT,
     MODALS,
@@ -25,7 +26,7 @@ from .language import (
     meant,
 )
 from .orders import ORDERS
-from .phrases import Found, find, phrases_in
+from .phrases import Found, has_phrase, phrases_in
 from .plainer import plainer
 from .quantities import term_of
 from .said import Said, no_relation
@@ -42,6 +43,11 @@ _ANY: Final = {"anything": "nothing", "any": "no"}
 
 def read_clause(text: str, words: list[Words]) -> Said:
     """What a clause says by itself."""
+    if bygone := [item for item in words if item.text == BYGONE]:
+        where = bygone[0]
+        raise InvalidGoalError(
+            "this says what was; say what is to be", where.offset, text[where.offset : where.stop]
+        )
     if words[-1].text == "up" and words[0].text in TAKES:
         words = words[:-1]
     if words[0].text == "can" and len(words) > 2 and meant(words[1].text, {"you"}, {"your"}):
@@ -52,7 +58,7 @@ def read_clause(text: str, words: list[Words]) -> Said:
         return Said(words, term_of(words[2:]), again=words[0].text)
     if words[-1].text == "too" and len(words) > 1:
         words = words[:-1]
-        related = any(True for _ in find(words, PREDICATES.phrases))
+        related = has_phrase(words)
         if not related and not any(item.text in CLEAR for item in words):
             return Said(words, term_of(words), again="so")
     if plain := plainer(words):
@@ -77,6 +83,8 @@ def read_clause(text: str, words: list[Words]) -> Said:
     before = [item for item in words[verb:first] if item.text not in MUTE - NOUN_VERBS - WANTS]
     negated = [item for item in before if item.text == NEGATION]
     before = [item for item in before if item.text != NEGATION]
+    while len(before) > 1 and before[-1].text in WANTS:
+        before = before[:-1]  # "red wants to be on blue"
     if wants := [index for index, item in enumerate(before) if item.text in WANTS]:
         # Who wants it is nothing that is on the table: "my students want red on blue".
         before = before[wants[-1] + 1 :] or before

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from .language import MUTE, NOUN_VERBS, NOUNS
-from .terms import Words
+from .terms import Words, names_place
 
 _EDGES: Final = {
     "top": "top", "topmost": "top", "uppermost": "top", "highest": "top", "bottom": "bottom",
@@ -63,6 +63,6 @@ def _described(words: Sequence[Words]) -> tuple[str | None, list[Words], int] | 
         return None
     for last in (at + 3, at + 2):
         place = list(words[at + 1 : last])
-        if place and Words(" ".join(item.text for item in place), 0).is_place:
+        if names_place(place):
             return edge, place, last
     return None

@@ -10,7 +10,7 @@ from scene_graph import PREDICATES
 
 from .language import CARRIES, HOLDS, IT, MUTE, NEGATION, NOUN_VERBS, PLACE_NOUNS, PLURALS
 from .phrases import find
-from .terms import Words, number_of
+from .terms import Words, names_place, number_of
 
 _EVERY: Final = frozenset({"every", "each", "all"})
 _HIGHER: Final = frozenset({"higher", "taller"})
@@ -103,7 +103,7 @@ def _without_there(held: list[Words]) -> tuple[list[Words], tuple[str, ...]]:
 
 def _place(whose: Sequence[Words]) -> list[Words] | None:
     """The place that is meant, "every stack" for "no stack"; None for a block."""
-    if Words(" ".join(item.text for item in whose), whose[0].offset).is_place:
+    if names_place(whose):
         return list(whose)
     if len(whose) != 2 or PLURALS.get(whose[1].text, whose[1].text) not in PLACE_NOUNS:
         return None

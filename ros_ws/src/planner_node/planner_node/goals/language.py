@@ -12,37 +12,44 @@ from collections.abc import Collection
 from typing import Final
 
 #: Verbs that are nouns too, where a number or a phrase follows: "stack 2 below red".
-NOUN_VERBS: Final = frozenset({"place", "stack", "position"})
+NOUN_VERBS: Final = frozenset({"place", "stack", "position", "pile"})
 #: Ask for the relation that follows.
 VERBS: Final = NOUN_VERBS | {
     "put", "move", "set", "get", "bring", "lay", "drop", "leave", "keep", "shift", "push",
     "slide", "transfer", "arrange", "build", "balance", "sit", "make", "let", "have",
     "relocate", "stick", "add", "pop", "plop", "plonk", "chuck", "dump", "shove", "hoist",
-    "remove", "load", "deposit", "carry", "placing", "putting", "moving", "stacking",
+    "distribute", "rearrange", "spread", "organize", "organise", "reorganize", "create", "form",
+    "construct", "assemble", "give", "show", "remove", "load", "deposit", "carry", "placing",
+    "putting", "moving", "stacking",
 }  # fmt: skip
 #: Pick something up that the next clause calls "it".
-TAKES: Final = frozenset({"take", "grab", "lift", "pick", "fetch", "grasp", "get", "use"})
+TAKES: Final = frozenset(
+    {"take", "grab", "lift", "pick", "fetch", "grasp", "get", "use", "find", "locate"}
+)
 #: Say of a block or place that nothing stands on it.
 CLEAR: Final = frozenset({"clear", "empty", "free", "bare", "vacant", "unoccupied", "uncovered"})
 #: Mean nothing for the goal wherever they stand.
 MUTE: Final = VERBS | {
-    "is", "are", "be", "being", "stays", "stay", "sits", "sitting", "stands", "stand", "standing",
-    "rests", "resting", "goes", "go", "going", "lies", "lie", "lying", "placed", "moved",
-    "stacked", "located", "positioned", "should", "shall", "must", "has", "needs", "need",
-    "ought", "would", "will", "wants", "want", "come", "comes", "belongs", "belong", "ends",
-    "gets", "please", "kindly", "i", "we", "you", "me", "us", "like", "love", "prefer", "now",
-    "first", "finally", "also", "just", "simply", "so", "that", "there", "hey", "hi", "hello",
-    "robot", "ok", "okay", "thanks", "thx", "sure", "ensure", "were", "still", "again", "too",
-    "nice", "great", "your", "task", "goal", "next", "could", "wish", "maybe", "perhaps",
+    "is", "are", "be", "being", "stays", "stay", "sits", "sitting", "stands", "stand",
+    "standing", "rests", "resting", "goes", "go", "going", "lies", "lie", "lying", "placed",
+    "moved", "stacked", "located", "positioned", "should", "shall", "must", "has", "needs",
+    "need", "ought", "would", "will", "wants", "want", "come", "comes", "belongs", "belong",
+    "ends", "gets", "please", "kindly", "i", "we", "you", "me", "us", "like", "love", "prefer",
+    "now", "first", "finally", "also", "just", "simply", "so", "that", "there", "hey", "hi",
+    "hello", "robot", "ok", "okay", "thanks", "thx", "sure", "ensure", "were", "still", "again",
+    "too", "nice", "great", "your", "task", "goal", "next", "could", "wish", "maybe", "perhaps",
     "somewhere", "sir", "dear", "afterwards", "after", "quickly", "carefully", "gently", "do",
-    "does", "did", "try", "may", "might", "well", "as", "down", "anywhere", "today", "pls", "plz",
-    "pleas", "was", "secondly", "thirdly", "lastly", "together", "instead", "itself",
+    "does", "did", "try", "may", "might", "well", "as", "down", "anywhere", "today", "pls",
+    "plz", "pleas", "was", "secondly", "thirdly", "lastly", "together", "instead", "itself",
     "themselves", "ask", "trouble", "think", "guess", "suppose", "see", "check", "confirm",
-    "verify", "am", "er", "erm", "um", "uh", "uhm", "really", "certain", "kind", "enough", "asap",
-    "quick", "pray", "rest", "suggest", "request", "strictly", "basically", "literally",
-    "definitely", "absolutely", "always", "completely", "totally", "ideally", "actual", "needing",
-    "slowly", "careful", "been", "found", "end", "kept", "stood", "sat", "put", "seen", "cheers",
-    "appreciate", "good", "grateful", "possible",
+    "verify", "am", "er", "erm", "um", "uh", "uhm", "really", "certain", "kind", "enough",
+    "asap", "quick", "pray", "rest", "suggest", "request", "strictly", "basically", "literally",
+    "definitely", "absolutely", "always", "completely", "totally", "ideally", "actual",
+    "needing", "slowly", "careful", "been", "found", "end", "kept", "stood", "sat", "put",
+    "seen", "cheers", "appreciate", "good", "grateful", "possible", "my", "our", "bitte", "job",
+    "plan",
+    "aim", "mission", "objective", "delighted", "happy", "glad", "pleased", "gimme", "yo",
+    "bro", "dude", "better",
 }  # fmt: skip
 #: Join relations as a comma does.
 JOINS: Final = frozenset(
@@ -58,9 +65,18 @@ POLITE: Final = frozenset({
     "day", "cheers", "greetings", "yours", "sincerely", "faithfully", "regards", "best", "bye",
     "goodbye", "obliged", "appreciated", "welcome", "madam", "friend", "buddy", "mate", "ta",
     "ever", "thank", "again", "there", "asap", "quick", "quickly", "carefully", "gently",
-    "slowly", "careful", "everyone", "pray", "love", "sweetheart", "darling", "honey", "monsieur",
-    "mister", "miss", "boss", "pal", "dude", "guys", "folks", "professor", "doctor", "pardon",
-    "excuse", "many", "yes", "yeah", "yep", "very", "much", "advance", "time",
+    "slowly", "careful", "everyone", "pray", "love", "sweetheart", "darling", "honey",
+    "monsieur", "mister", "miss", "boss", "pal", "dude", "guys", "folks", "professor", "doctor",
+    "pardon", "excuse", "many", "yes", "yeah", "yep", "very", "much", "advance", "time",
+    "listen", "look", "remember", "honestly", "frankly", "basically", "next", "finally",
+    "lastly", "first", "ultimately", "firstly", "secondly", "thirdly", "then", "anyway",
+    "anyways", "essentially", "note", "attention", "umm", "hmmm", "eh", "ha", "haha", "lol",
+    "wow", "yay", "today", "tonight", "tomorrow", "man", "bro", "team", "this", "computer",
+    "machine", "nurse", "colleague", "gosh", "afterwards", "additionally", "furthermore",
+    "moreover", "also", "obviously", "clearly", "ideally", "importantly", "important", "bitte",
+    "danke", "merci", "servus", "hallo", "moin", "sweetie", "young", "old", "lady", "ladies",
+    "gentlemen", "children", "kids", "kiddo", "hon", "all-right", "mkay", "okey", "k", "kk",
+    "oki", "ty", "tx",
 })  # fmt: skip
 #: Words of a heading, as in "the goal for my class: red on blue"; all else before a colon counts.
 HEADING: Final = frozenset({
@@ -68,9 +84,9 @@ HEADING: Final = frozenset({
     "arrangement", "setup", "configuration", "order", "plan", "target", "final", "my", "our",
     "for", "class", "demo", "experiment", "lesson", "a", "this", "one", "new", "layout",
     "exercise", "of", "state", "sort", "like", "follows", "following", "them", "required",
-    "desired", "wanted", "end", "result", "towers", "piles", "two", "step", "part",
-    "condition", "trial", "phase", "number", "nice", "high", "big", "tall", "little", "small",
-    "satisfy", "be", "request", "instructions", "instruction",
+    "desired", "wanted", "end", "result", "towers", "piles", "two", "step", "part", "condition",
+    "trial", "phase", "number", "nice", "high", "big", "tall", "little", "small", "satisfy",
+    "be", "request", "instructions", "instruction",
 })  # fmt: skip
 #: Begin what says of all of a kind; "but" behind them leaves some out.
 EVERYONE: Final = frozenset({
@@ -82,7 +98,11 @@ OTHERS: Final = frozenset({"everything else", "all others", "others", "rest", "o
 NOTHING_ELSE: Final = frozenset({
     "nothing else", "no other", "no others", "no other block", "no other blocks", "none other",
 })  # fmt: skip
+#: Says what should have been.
+BYGONE: Final = "bygone"
 EXCEPT: Final = "except"
+#: In front of what is not meant: "on blue instead of green".
+INSTEAD: Final = "instead-of"
 #: Between what was said and what is meant instead.
 CORRECTION: Final = "correction"
 #: Takes back what was said last; what follows is new.
@@ -105,7 +125,7 @@ MODALS: Final = frozenset({
     "should", "shall", "must", "would", "stands", "standing", "sitting", "placed", "needs",
     "goes",
 })  # fmt: skip
-ARTICLES: Final = frozenset({"the", "teh", "hte"})
+ARTICLES: Final = frozenset({"the", "teh", "hte", "th", "da", "der", "die", "das"})
 NEGATION: Final = "not"
 #: Words that hold a negation; with what is left of them.
 SHORT_NEGATIONS: Final = {
@@ -124,11 +144,14 @@ CARRIES: Final = frozenset({"carry", "carries", "bear", "bears", "support", "hol
 #: Fit every object.
 NOUNS: Final = frozenset({
     "block", "object", "one", "thing", "piece", "item", "brick", "part", "element",
+    "thingy", "klotz", "stone", "toy", "guy",
 })  # fmt: skip
 #: Of several, what they are called one by one.
 PLURALS: Final = {
     "blocks": "block", "objects": "object", "ones": "one", "things": "thing", "pieces": "piece",
     "items": "item", "bricks": "brick", "parts": "part", "elements": "element",
+    "thingies": "thingy",
+    "stones": "stone", "toys": "toy", "guys": "guy",
     "boxes": "box", "cubes": "cube", "cylinders": "cylinder",
     "spheres": "sphere", "balls": "ball", "prisms": "prism", "roofs": "roof", "cuboids": "cuboid",
     "stacks": "stack", "places": "place", "towers": "tower", "columns": "column", "piles": "pile",
@@ -137,7 +160,9 @@ PLURALS: Final = {
 #: Other words for a shape or a colour, where no object is called so.
 SYNONYMS: Final = {
     "cube": "box", "cuboid": "box", "bx": "box", "boks": "box", "ball": "sphere", "roof": "prism",
-    "wedge": "prism", "gray": "grey", "violet": "purple",
+    "wedge": "prism", "tube": "cylinder",
+    "pipe": "cylinder", "barrel": "cylinder", "drum": "cylinder", "orb": "sphere",
+    "gray": "grey", "violet": "purple",
 }  # fmt: skip
 NUMBERS: Final = {
     "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7,
@@ -151,12 +176,13 @@ MORE_COLORS: Final = frozenset({
 })  # fmt: skip
 #: Words that are right as they are, so that they are not taken for others with a typo.
 OTHER_WORDS: Final = MORE_COLORS | {
-    "light", "dark", "pale", "bright", "deep",
-    "tin", "bed", "glue", "line", "back", "ink", "pine", "bin", "can", "them", "they", "their",
-    "there", "here", "these", "those", "which", "than", "only", "same", "different", "alone",
-    "together", "either", "neither", "off", "nothing", "none", "everything", "something",
-    "anything", "order", "him", "her", "his", "its", "base", "peak", "single", "half", "mean",
-    "meant", "wait",
+    "light", "dark", "pale", "bright", "deep", "tin", "bed", "glue", "line", "back", "ink",
+    "pine", "bin", "can", "them", "they", "their", "there", "here", "these", "those", "which",
+    "than", "only", "same", "different", "alone", "together", "either", "neither", "off",
+    "nothing", "none", "everything", "something", "anything", "order", "him", "her", "his",
+    "its", "base", "peak", "single", "half", "mean", "lowest", "highest", "topmost",
+    "uppermost", "bottommost", "meant", "wait", "once", "when", "unless", "until", "whenever",
+    "before", "after", "during",
 }  # fmt: skip
 #: "the left stack", "the middle place"; with what they are called.
 SIDES: Final = {

@@ -6,12 +6,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from .language import ARTICLES, HOLDS, JOINS, MUTE, NOUN_VERBS, TAKES
+from .language import ARTICLES, HOLDS, JOINS, MUTE, NOUN_VERBS, TAKES, VERBS
 from .orders import order_at
 from .places import place_at
-from .terms import Words, number_of
-from .wordings import MERGED
+from .terms import Words, names_place, number_of
+from .wordings import MERGED, PROVISOS
 
+_TOWERS: Final = frozenset({"tower", "stack", "pile"})
+_BUILDING: Final = VERBS | {"", "want", "need", "like", "please", "be", "is"}
 _LONGEST: Final = max(map(len, MERGED))
 
 
@@ -38,6 +40,8 @@ def _at(words: Sequence[Words], before: str, removing: bool) -> tuple[list[Words
     """
     for length in range(min(_LONGEST, len(words)), 0, -1):
         texts = tuple(item.text for item in words[:length])
+        if texts in PROVISOS and before:
+            return [], length
         if texts in MERGED:
             offset, stop = words[0].offset, words[length - 1].stop
             return [Words(text, offset, stop) for text in MERGED[texts]], length
@@ -49,6 +53,8 @@ def _at(words: Sequence[Words], before: str, removing: bool) -> tuple[list[Words
         return [Words(name, words[0].offset, words[used - 1].stop)], used
     if place := place_at(words, before):
         return place
+    if texts[0] == "a" and texts[2:3] == ("of",) and texts[1] in _TOWERS and before in _BUILDING:
+        return [], 3  # "build a tower of red on blue"
     if between := _between(texts):
         text, used = between
         return [Words(text, words[0].offset, words[used - 1].stop)], used
@@ -72,9 +78,7 @@ def _away(words: Sequence[Words], removing: bool) -> tuple[list[Words], int] | N
     if not used or used == len(words):
         return None
     behind = words[used : used + 3]
-    named = place_at(behind) or any(
-        Words(" ".join(item.text for item in behind[:last]), 0).is_place for last in (1, 2)
-    )
+    named = place_at(behind) or any(names_place(behind[:last]) for last in (1, 2))
     offset, stop = words[0].offset, words[used - 1].stop
     inside = "in" if named else "on"
     return [Words("not", offset, stop), Words(inside, offset, stop)], used

@@ -14,7 +14,7 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
-from scene_graph import PREDICATES, UP, Phrase
+from scene_graph import ABOVE, PREDICATES, UP, Phrase
 
 from ..errors import InvalidGoalError
 from .clauses import read_clause
@@ -65,7 +65,7 @@ class _Reader:
     def read(self, sentence: Sequence[Said]) -> None:
         """Adds the relations of a sentence."""
         self._before = len(self._told.relations)
-        said = self._without_rows(turned_at_comma(sentence))
+        said = self._without_rows(_in_place(turned_at_comma(sentence)))
         waiting: list[Said] = []
         subjects: list[Term] = []
         last: Said | None = None
@@ -89,6 +89,8 @@ class _Reader:
                 spoken = [*named, clause.subject]
                 if clause.subject.stands_for_several:
                     spoken = named or self._told.all_named(clause.subject)
+                if clause.subject.words.text in _WHICH and named:
+                    spoken = subjects = named[-1:]  # "the red one, which must be clear, …"
                 for term in spoken:
                     self._told.clear(self._told.meant(term, None))
                 self._told.subjects, self._told.object = subjects, None
@@ -106,6 +108,7 @@ class _Reader:
                 waiting, last = [], clause
                 continue
             if clause.links:
+                clause, named = _of_topic(clause, named)
                 subjects = self._subjects_of(clause, named, subjects)
                 self._told.add_links(subjects, clause)
                 waiting, last = [], clause
@@ -235,3 +238,27 @@ class _Reader:
                 raise unclear(clause.subject)
             return [self._told.object]
         return [*named, self._told.meant(clause.subject, None, again=bool(clause.links))]
+
+
+def _of_topic(clause: Said, named: list[Term]) -> tuple[Said, list[Term]]:
+    """ "blue first, red on that" with the name in front as the object of what is said of it."""
+    own = clause.subject is not None and clause.subject.words.text not in IT | _WHICH | BOTH
+    if not own or len(named) != 1 or len(clause.links) != 1:
+        return clause, named
+    phrase, denied, object_, written = clause.links[0]
+    if object_.words.text not in IT or named[0].kind is not Kind.THE:
+        return clause, named
+    return replace(clause, links=((phrase, denied, named[0], written),)), []
+
+
+def _in_place(said: list[Said]) -> list[Said]:
+    """ "in stack 0, red on blue" with the place said of red as well."""
+    if len(said) != 2 or said[1].subject is None or len(said[1].links) != 1:
+        return said
+    place = place_of(said[0])
+    phrase, denied, object_, _ = said[1].links[0]
+    tower = phrase.predicate.name in (UP, ABOVE) and not denied and not object_.is_place
+    if place is None or said[0].edge or said[1].edge or not tower:
+        return said
+    inside = PREDICATES.phrases["in",]
+    return [said[1], replace(said[1], links=((inside, *place[1:]),))]

@@ -50,13 +50,19 @@ _COMMON: Final = {"neither", "nothing", "everything", "different"} | frozenset(
     for word in RIGHT_WORDS.union(*MERGED, *PREDICATES.phrases, PLACE_NOUNS, SIDES) - OTHER_WORDS
     if len(word) >= 4 and word.isalpha() and word not in COLORS and word not in SHAPES
 )
+#: The keys beside each on a keyboard, in its row.
+_BESIDE: Final = {
+    row[at]: row[max(at - 1, 0) : at] + row[at + 1 : at + 2]
+    for row in ("qwertyuiop", "asdfghjkl", "zxcvbnm")
+    for at in range(len(row))
+}
 _NO_SLIP: Final = RIGHT_WORDS.union(COLORS, SHAPES, *MERGED, *PREDICATES.phrases, ARTICLES, JOINS)
 
 
 def without_slip(word: str) -> str:
     """A common word of goals without a slip: two letters exchanged, one left out or doubled.
 
-    Another letter in its place is no slip: that makes other words of it.
+    Another letter in its place is one only where its key is beside: others make other words of it.
     """
     if len(word) < 3 or word in _NO_SLIP or not word.isalpha():
         return word
@@ -65,7 +71,7 @@ def without_slip(word: str) -> str:
     if not found and len(word) >= 4:
         found = {
             word[:at] + word[at + 1 :] for at in range(1, len(word)) if word[at] == word[at - 1]
-        } & (_COMMON | VERBS)
+        } & (_COMMON | VERBS | {"all", "not", "and", "the"})
     if not found and len(word) >= 4:
         found = {
             known
@@ -73,6 +79,12 @@ def without_slip(word: str) -> str:
             if len(known) == len(word) + 1
             and any(known[:at] + known[at + 1 :] == word for at in range(1, len(known)))
         }
+    if not found and len(word) >= 4:
+        found = {
+            word[:at] + key + word[at + 1 :]
+            for at in range(1, len(word))
+            for key in _BESIDE.get(word[at], "")
+        } & (_COMMON | VERBS)
     return found.pop() if len(found) == 1 else word
 
 
@@ -121,3 +133,8 @@ def find(words: Sequence[Words], phrases: _Phrases) -> Iterator[Found]:
                 break
         else:
             index += 1
+
+
+def has_phrase(words: Sequence[Words]) -> bool:
+    """Whether there is a phrase among the words."""
+    return next(find(words, PREDICATES.phrases), None) is not None

@@ -23,7 +23,7 @@ from .language import (
 from .orders import ORDERS
 from .phrases import RIGHT_WORDS, find
 from .quantities import is_quantity
-from .terms import Words
+from .terms import Words, names_place
 
 _SHAPES: Final = frozenset(SHAPES) | {word for word in SYNONYMS if SYNONYMS[word] in SHAPES}
 _COLORS: Final = frozenset(COLORS) | MORE_COLORS | SYNONYMS.keys() - _SHAPES
@@ -50,7 +50,7 @@ def told_apart(clause: list[Words]) -> Iterator[list[Words]]:
             break  # "on blue put red"
         object_last = number == len(found) and number > 0 and not ordered
         for index, (first, stop) in enumerate(names[:-1]):
-            place = ordered and index == 0 and clause[first].is_place
+            place = ordered and index == 0 and names_place(clause[first:stop])
             if object_last or place:
                 continue
             yield clause[done:stop]
@@ -59,13 +59,18 @@ def told_apart(clause: list[Words]) -> Iterator[list[Words]]:
     yield clause[done:]
 
 
+def is_name(words: Sequence[Words]) -> bool:
+    """Whether it is one name and nothing else."""
+    return bool(words) and _name(words) == len(words)
+
+
 def _in_place(clause: list[Words]) -> list[Words] | None:
     """ "red stack 1" as "red in stack 1"; None for all else."""
     names = _names(clause, 0, len(clause))
     if len(names) != 2:
         return None
     parts = [clause[first:last] for first, last in names]
-    places = [Words(" ".join(item.text for item in part), 0).is_place for part in parts]
+    places = [names_place(part) for part in parts]
     if sum(places) != 1:
         return None
     place, name = parts if places[0] else reversed(parts)
@@ -95,7 +100,7 @@ def _name(words: Sequence[Words]) -> int:
     texts = [item.text for item in words]
     if words[0].is_place or texts[0] in _ALONE:
         return 1
-    if len(words) > 1 and Words(" ".join(texts[:2]), 0).is_place:
+    if len(words) > 1 and names_place(words[:2]):
         return 2
     index = 0
     while index < len(texts) and is_quantity(texts[index]):

@@ -11,10 +11,10 @@ from scene_graph import PREDICATES
 
 from ..errors import InvalidGoalError
 from .corrections import corrected, joined
-from .courtesy import says_nothing, without_courtesy
+from .courtesy import is_talk, says_nothing, without_courtesy
+from .exceptions import leaves_out, with_exceptions, with_only, without_both
 from .language import (
     CLEAR,
-    EVERYONE,
     EXCEPT,
     HEADING,
     JOINS,
@@ -23,20 +23,25 @@ from .language import (
     NOUN_VERBS,
     OPENINGS,
     PLURALS,
+    SIDES,
     TAKES,
     meant,
 )
 from .merged import merged
 from .orders import ORDERS
-from .phrases import RIGHT_WORDS, find
-from .run_on import told_apart
-from .terms import Words
+from .phrases import RIGHT_WORDS, find, has_phrase
+from .relative import with_looks, without_contrast
+from .run_on import is_name, told_apart
+from .sides import with_sides
+from .terms import Words, names_place
 from .tokens import parts_of
 from .towers import as_tower
 
 _BEFORE_OPENING: Final = (MUTE | HEADING) - {"this", "one", "two", "them"}
 #: Say in which order a tower is told.
 _TOLD_IN_ORDER: Final = ORDERS.keys() | {"bottom", "top"}
+#: Places on their own, in front of a colon.
+_OUTERMOST: Final = {word: side for word, side in SIDES.items() if side != "middle"}
 _NO_NAMES: Final = MUTE | TAKES | CLEAR | {"elsewhere"}
 _NONE: Final = frozenset({"nothing", "no", "none"})
 _DENYING: Final = frozenset({NEGATION, "nothing", "none"})
@@ -55,6 +60,9 @@ def sentences(text: str) -> Iterator[list[list[Words]]]:
         kept = [clause for clause in clauses if not _says_nothing(clause)]
         if found and kept and joined(found[-1], kept):
             found[-1] += kept
+        elif found and kept and _goes_on(found[-1], kept):
+            found[-1][0] += kept[0]  # "Red. On blue."
+            found[-1] += kept[1:]
         elif kept:
             found.append(kept)
     heading: list[list[Words]] = []
@@ -70,6 +78,13 @@ def sentences(text: str) -> Iterator[list[list[Words]]]:
             yield _finished(clauses)
 
 
+def _goes_on(before: Sequence[list[Words]], after: Sequence[list[Words]]) -> bool:
+    """Whether a sentence says of nobody what it says, and the one before nothing of somebody."""
+    starts = next(find(after[0], PREDICATES.phrases), None)
+    names = is_name([item for clause in before for item in clause])
+    return names and starts is not None and not starts.first and is_name(after[0][starts.last :])
+
+
 def _written(text: str) -> Iterator[list[list[Words]]]:
     """The sentences as they are written, in the parts that commas make."""
     clauses: list[list[Words]] = []
@@ -83,9 +98,9 @@ def _written(text: str) -> Iterator[list[list[Words]]]:
             # "stack 1: red" is a sentence of its own.
             yield clauses
             clauses = [place]
-        elif clauses and colon and _is_place(clause):
+        elif clauses and colon and names_place(clause):
             clauses[-1] = [*clauses[-1], *clause]  # "red: stack 1"
-        elif clause and not (part.mark == ":" and is_heading(clause)):
+        elif clause and not (part.mark == ":" and (is_heading(clause) or _announces(clause))):
             clauses.append(clause)
         colon = part.mark == ":"
         if part.end:
@@ -93,15 +108,22 @@ def _written(text: str) -> Iterator[list[list[Words]]]:
             clauses = []
 
 
+def _announces(clause: Sequence[Words]) -> bool:
+    """Whether somebody says that a goal follows: "I picture two towers"."""
+    rest = [item for item in clause if item.text not in HEADING and item.text not in PLURALS]
+    return bool(rest) and is_talk(rest)
+
+
 def _finished(clauses: Sequence[list[Words]]) -> list[list[Words]]:
     """The clauses of a sentence, each with one relation or one name."""
     parts: list[list[Words]] = []
     denied = False
-    for clause in map(_with_exceptions, _with_order(clauses)):
+    clauses = with_only([with_looks(without_contrast(clause)) for clause in with_sides(clauses)])
+    for clause in map(with_exceptions, _with_order(clauses)):
         parts += _split_negation(clause, denied)
         # "nothing on red, green or blue"
         denied = any(item.text in _DENYING for item in clause) or (
-            denied and not _has_phrase(clause)
+            denied and not has_phrase(clause)
         )
     towers = as_tower([one for part in parts for one in told_apart(part)])
     if not any(item.text in _TOLD_IN_ORDER for clause in towers for item in clause):
@@ -114,29 +136,24 @@ def _check_order(clauses: Sequence[list[Words]]) -> None:
     for clause in clauses:
         for number, item in enumerate(clause):
             behind = list(takewhile(lambda one: one.text not in JOINS, clause[number + 1 :]))
-            related = _has_phrase(behind) or any(one.text in _NO_NAMES for one in behind)
+            related = has_phrase(behind) or any(one.text in _NO_NAMES for one in behind)
             if item.text == "then" and behind and not related:
                 raise InvalidGoalError(
                     "say where this goes", behind[0].offset, " ".join(one.text for one in behind)
                 )
 
 
-def _has_phrase(clause: Sequence[Words]) -> bool:
-    return any(True for _ in find(clause, PREDICATES.phrases))
-
-
 def _place_heading(clause: list[Words]) -> list[Words] | None:
     """ "in stack 1" for "stack 1" or "a tower in stack 1" before a colon; None for all else."""
-    clause = [item for item in clause if item.text not in (HEADING | MUTE) - NOUN_VERBS]
+    if len(clause) == 1 and (side := _OUTERMOST.get(clause[0].text)):
+        clause = [Words(f"{side} stack", clause[0].offset, clause[0].stop)]
+    if not names_place(clause):
+        clause = [item for item in clause if item.text not in (HEADING | MUTE) - NOUN_VERBS]
     if len(clause) > 1 and clause[0].text in ("in", "on", "at"):
         clause = clause[1:]
-    if clause and Words(" ".join(item.text for item in clause), clause[0].offset).is_place:
+    if names_place(clause):
         return [Words("in", clause[0].offset, clause[0].offset), *clause]
     return None
-
-
-def _is_place(words: Sequence[Words]) -> bool:
-    return bool(words) and Words(" ".join(item.text for item in words), 0).is_place
 
 
 def _with_order(clauses: Sequence[list[Words]]) -> list[list[Words]]:
@@ -161,19 +178,6 @@ def _says_nothing(clause: Sequence[Words]) -> bool:
     return says_nothing(clause) or (len(clause) == 1 and clause[0].text.isdigit())
 
 
-def _with_exceptions(clause: list[Words]) -> list[Words]:
-    """ "all boxes but the white one", "everything in stack1 but red", with "except"."""
-    texts = [item.text for item in clause]
-    for at in range(1, len(clause) - 1):
-        if texts[at] != "but" or not any(text in EVERYONE for text in texts[:at]):
-            continue
-        named = not _has_phrase(clause[at + 1 :]) and NEGATION not in texts[at + 1 :]
-        if named or not _has_phrase(clause[:at]):
-            word = Words(EXCEPT, clause[at].offset, clause[at].stop)
-            return [*clause[:at], word, *clause[at + 1 :]]
-    return clause
-
-
 def _split(clauses: Sequence[list[Words]]) -> Iterator[list[Words]]:
     """Once more, at words that join relations."""
     for clause in clauses:
@@ -182,31 +186,19 @@ def _split(clauses: Sequence[list[Words]]) -> Iterator[list[Words]]:
             if item.text in OPENINGS and all(word.text in _BEFORE_OPENING for word in part):
                 # What is before is no relation, and none is missing.
                 part = []
-            elif item.text == "and" and _leaves_out(part):
+            elif item.text == "and" and leaves_out(part):
                 # "all but red and blue in stack 1"
                 part.append(Words(EXCEPT, item.offset, item.stop))
-            elif item.text not in JOINS and not (item.text in OPENINGS and _has_phrase(part)):
+            elif item.text not in JOINS and not (item.text in OPENINGS and has_phrase(part)):
                 part.append(item)
             else:
                 if item.text == "and":
-                    part = _without_both(part)
+                    part = without_both(part)
                 if part and not _says_nothing(part):
                     yield part
                 part = []
         if part and not _says_nothing(part):
             yield part
-
-
-def _without_both(part: list[Words]) -> list[Words]:
-    """ "both red" in front of "and blue" without its "both"."""
-    at = next((index for index, item in enumerate(part) if item.text == "both"), len(part) - 1)
-    named = at + 1 < len(part) and part[-1].text not in PLURALS and not _has_phrase(part)
-    return [*part[:at], *part[at + 1 :]] if named else part
-
-
-def _leaves_out(part: Sequence[Words]) -> bool:
-    """Whether it says who is left out, and not yet of what."""
-    return any(item.text == EXCEPT for item in part) and not _has_phrase(part)
 
 
 def _split_negation(clause: list[Words], denied: bool) -> Iterator[list[Words]]:
@@ -218,7 +210,7 @@ def _split_negation(clause: list[Words], denied: bool) -> Iterator[list[Words]]:
     texts = [item.text for item in clause]
     neither = "neither" in texts and "nor" in texts
     nothing = "or" in texts and any(text in _NONE for text in texts[: texts.index("or")])
-    if nothing or (denied and "or" in texts and NEGATION not in texts and not _has_phrase(clause)):
+    if nothing or (denied and "or" in texts and NEGATION not in texts and not has_phrase(clause)):
         # What is not on red or blue is on none of them.
         yield from _split(
             [
@@ -240,7 +232,7 @@ def _split_negation(clause: list[Words], denied: bool) -> Iterator[list[Words]]:
         if item.text not in ("neither", NEGATION)
     ]
     parts = list(_split([joined]))
-    with_phrase = [_has_phrase(part) for part in parts]
+    with_phrase = [has_phrase(part) for part in parts]
     if neither and start == 0 and with_phrase[0] and not all(with_phrase):
         # "neither red on blue nor green": on green, or the green one?
         yield clause

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import enum
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -115,6 +116,11 @@ class Term:
 def number_of(text: str) -> int | None:
     """The number that a word is, in digits or in letters."""
     return int(text) if text.isdigit() else NUMBERS.get(text)
+
+
+def names_place(words: Sequence[Words]) -> bool:
+    """Whether some words together name one place."""
+    return bool(words) and Words(" ".join(item.text for item in words), 0).is_place
 
 
 def is_any_place(term: Term) -> bool:

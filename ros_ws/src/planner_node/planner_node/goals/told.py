@@ -103,7 +103,11 @@ class Told:
                     written.offset,
                     written.text,
                 )
+        if len(links) > 1 and any(term.kind is Kind.COUNT and term.bare for term in subjects):
+            raise unclear(subjects[0])  # "the one on red should be on blue"
         carried = clause.subject is None
+        if carried and subjects and all(term.kind is Kind.NO for term in subjects):
+            links = tuple((phrase, False, other, said) for phrase, _, other, said in links)
         for phrase, denied, object_, written in links:
             if object_.words.text in EACH_OTHER:
                 if len(subjects) == 1 and subjects[0].exact == 2:
@@ -176,6 +180,9 @@ class Told:
         before = self.subjects[0] if len(self.subjects) == 1 else None
         if term.bare and term.others:
             # "one red block here and the other there": there are no more of them than these.
+            if before is not None and before.kind is Kind.THE and term.least > 1:
+                rest = replace(term.words, text="block")  # "the other three"
+                return replace(term, words=rest, kind=Kind.EVERY, bare=False, exact=term.least)
             if before is None or before.kind is not Kind.COUNT or before.most != before.least:
                 raise unclear(term)
             exact = before.least + term.least
@@ -190,7 +197,8 @@ class Told:
         """Adds the relations of "red and blue in the same stack"; False where it says no such."""
         text = object_.words.text
         blocks = list(subjects)
-        with_other = next((head for head in SAME_PLACE if text.startswith(f"{head} as ")), None)
+        others = SAME_PLACE | DIFFERENT_PLACES
+        with_other = next((head for head in others if text.startswith(f"{head} as ")), None)
         if with_other is not None:
             rest = text.removeprefix(f"{with_other} as ")
             blocks.append(self.meant(Term(Words(rest, object_.words.offset)), phrase))
@@ -199,10 +207,13 @@ class Told:
                 blocks.append(self.object)  # "red under blue, in the same stack"
         else:
             return False
-        relations = in_one_place(blocks, text not in DIFFERENT_PLACES, denied)
+        same = (with_other or text) not in DIFFERENT_PLACES
+        relations = in_one_place(blocks, same, denied)
         if relations is None or phrase != Phrase(PREDICATES[ABOVE], needs_place=True):
             raise unclear(object_)
         self.relations += relations
+        if with_other and len(blocks) == 2:
+            self.subjects, self.object = blocks[:1], blocks[1]
         self._named |= {term.words.text: term for term in blocks}
         return True
 

@@ -9,9 +9,9 @@ from typing import Final
 
 from scene_graph import PREDICATES
 
-from .language import MUTE, NEGATION, NOUN_VERBS, OPENINGS
-from .phrases import find
-from .terms import Words
+from .language import MUTE, NEGATION, NOUN_VERBS, NOUNS, OPENINGS
+from .phrases import find, has_phrase
+from .terms import Words, names_place
 
 #: Where in a tower, from the bottom; behind a name or in front of it.
 _LEVELS: Final = {
@@ -44,6 +44,8 @@ def as_tower(clauses: list[list[Words]]) -> list[list[Words]]:
     levelled = [index for index, block in enumerate(told) if block and block.level is not None]
     if not levelled:
         return clauses
+    if listed := _listed_with_ends(clauses, told, levelled):
+        return listed
     first, last = levelled[0], levelled[-1]
     if first == last and not _has_phrase(told[first]):
         last = _last_listed(clauses, first)
@@ -70,6 +72,25 @@ def as_tower(clauses: list[list[Words]]) -> list[list[Words]]:
     if first == 1 and not heading:
         return [[*clauses[0], order], *ordered, *clauses[last + 1 :]]
     return [*clauses[:first], [*heading, order], *ordered, *clauses[last + 1 :]]
+
+
+def _listed_with_ends(
+    clauses: Sequence[list[Words]], told: Sequence[_Block | None], levelled: Sequence[int]
+) -> list[list[Words]] | None:
+    """ "red, green and blue, with red on top and blue at the bottom": the third is between them."""
+    if len(clauses) != 5 or list(levelled) != [3, 4]:
+        return None
+    ends = {block.level: _key(block.name) for block in told[3:] if block and not block.place}
+    names = {_key(clause): clause for clause in clauses[:3]}
+    between = names.keys() - set(ends.values())
+    if ends.keys() != {0, 2} or len(between) != 1 or not set(ends.values()) <= names.keys():
+        return None
+    order = Words("bottom-to-top", clauses[0][0].offset, clauses[0][0].stop)
+    return [[order], names[ends[0]], names[between.pop()], names[ends[2]]]
+
+
+def _key(name: Sequence[Words]) -> frozenset[str]:
+    return frozenset(item.text for item in name) - MUTE - NOUNS - OPENINGS
 
 
 def _from_bottom(blocks: Sequence[_Block]) -> list[list[Words]] | None:
@@ -105,7 +126,7 @@ def _block(clause: Sequence[Words]) -> _Block | None:
         return None
     for last in (2, 1):
         place = list(clause[-last:])
-        if texts[-last - 1 : -last] == ("of",) and _is_place(place):
+        if texts[-last - 1 : -last] == ("of",) and names_place(place):
             block = _block(clause[: -last - 1])
             return block and (None if block.level is None else replace(block, place=place))
     for length in range(min(_LONGEST, len(texts) - 1), 0, -1):
@@ -120,11 +141,7 @@ def _block(clause: Sequence[Words]) -> _Block | None:
 
 
 def _has_phrase(block: _Block | None) -> bool:
-    return block is not None and any(True for _ in find(block.name, PREDICATES.phrases))
-
-
-def _is_place(words: Sequence[Words]) -> bool:
-    return Words(" ".join(item.text for item in words), 0).is_place
+    return block is not None and has_phrase(block.name)
 
 
 def _heading_before(words: list[Words]) -> tuple[list[Words], list[Words]]:

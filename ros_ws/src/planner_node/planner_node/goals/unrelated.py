@@ -13,7 +13,7 @@ from .orders import ORDERS
 from .phrases import RIGHT_WORDS, find
 from .quantities import term_of
 from .said import Link, Said, no_relation
-from .terms import Term, Words
+from .terms import Kind, Term, Words, names_place
 
 
 def unrelated(text: str, words: list[Words]) -> Said:
@@ -27,12 +27,25 @@ def unrelated(text: str, words: list[Words]) -> Said:
     if not clear:
         clear = [item for item in words[:2] if meant(item.text, CLEAR | RIGHT_WORDS) in CLEAR]
     denied = any(item.text == NEGATION for item in words)
-    rest = [item for item in words if item not in clear]
+    rest = [item for item in words if item not in clear and item.text != NEGATION]
     start = max(verb_at_start(rest), asker(rest))
     name = without_ends(rest[start:])
     asks = [item for item in rest if item.text in MUTE and item not in name]
+    if clear and [item.text for item in name[:2]] == ["top", "of"]:
+        name = name[2:]  # "leave the top of red free"
+    if clear and not name and words[0].text == "which":
+        name = words[:1]
+    while len(name) > 1 and name[-1].text in ("all", "both"):
+        name = without_ends(name[:-1])  # "should all be clear"
     if len(clear) == 1 and name and not denied:
         return Said(words, term_of(name), clears=True)
+    if len(clear) == 1 and name and denied:
+        # "stack 1 must not be empty"
+        term = term_of(name)
+        some = Term(Words("block", clear[0].offset, clear[0].stop), Kind.COUNT)
+        phrase = PREDICATES.phrases["in" if term.is_place else "on",]
+        if term.kind in (Kind.THE, Kind.EVERY):
+            return Said(words, some, ((phrase, False, term, clear[0]),), of_object=True)
     if clear or denied or not name:
         raise no_relation(text, words)
     return Said(words, term_of(name), asks=bool(asks))
@@ -61,14 +74,14 @@ def tower_heading(text: str, words: Sequence[Words], order: Words) -> Said:
     if len(found) == 1:
         # A place; behind it there may be the first name.
         behind = rest[found[0].last :]
-        place = next((behind[:last] for last in (2, 1) if _is_place(behind[:last])), None)
+        place = next((behind[:last] for last in (2, 1) if names_place(behind[:last])), None)
         if place is None:
             raise no_relation(text, words)
         links = ((found[0].phrase, False, term_of(place), order),)
         rest = [*rest[: found[0].first], *behind[len(place) :]]
     elif found:
         raise no_relation(text, words)
-    elif stop := next((last for last in (2, 1) if _is_place(rest[:last])), 0):
+    elif stop := next((last for last in (2, 1) if names_place(rest[:last])), 0):
         # "column 1 from bottom to top"
         phrase = PREDICATES.phrases["in",]
         links, rest = ((phrase, False, term_of(rest[:stop]), order),), rest[stop:]
@@ -76,15 +89,13 @@ def tower_heading(text: str, words: Sequence[Words], order: Words) -> Said:
     return Said(words, subject, links, order=ORDERS[order.text])
 
 
-def _is_place(words: Sequence[Words]) -> bool:
-    return bool(words) and term_of(words).is_place
-
-
 def _taken(words: Sequence[Words]) -> list[Words]:
     """What "take …" or "pick … up" says to take; empty for other clauses."""
     for index, item in enumerate(words[:4]):
         if item.text in TAKES:
             name = list(words[index + 1 :])
+            source = next((at for at, one in enumerate(name) if at and one.text == "from"), 0)
+            name = name[:source] if source else name  # "take red from blue"
             return without_ends(name) if name else []
         if item.text not in MUTE and meant(item.text, MUTE | RIGHT_WORDS) not in MUTE:
             break

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import permutations
 from typing import Final
 
-from .language import CORRECTION, NUMBERS, TAKEN_BACK
+from .language import BYGONE, CORRECTION, INSTEAD, NUMBERS, TAKEN_BACK
 
 Wordings = dict[tuple[str, ...], tuple[str, ...]]
 
@@ -61,6 +62,13 @@ _NUMBERS: Final[Wordings] = {
     ("nobody",): ("nothing",),
     ("neither", "of"): ("no",),
     ("except", "for"): ("except",),
+    ("other", "than"): ("except",),
+    ("besides",): ("except",),
+    ("no", "more", "blocks"): ("no", "blocks"),
+    ("no", "more", "block"): ("no", "block"),
+    ("all", "by", "itself"): ("alone",),
+    ("all", "by", "themselves"): ("alone",),
+    ("all", "alone"): ("alone",),
     ("apart", "from"): ("except",),
     ("that", "are", "not"): ("except", "all"),
     ("that", "is", "not"): ("except",),
@@ -106,7 +114,11 @@ _NOTHING: Final = _all_as(
         "right now", "for today", "if possible", "before next run", "before next trial",
         "for next run", "for next trial", "neither more nor less", "no more and no less",
         "no more no less", "sorry for trouble", "sorry for bother", "sorry to bother you",
-        "would you be so kind and", "as long as", "provided that",
+        "would you be so kind and", "first of all", "second of all", "order irrelevant",
+        "order is irrelevant", "order is not important", "order not important",
+        "order unimportant", "while you is at it", "while we is at it", "while you are at it",
+        "while at it", "this time", "here is what i want", "here is what i need",
+        "if you do not mind",
     ),
 )  # fmt: skip
 #: People who correct themselves.
@@ -128,7 +140,8 @@ _CORRECTIONS: Final = _all_as(
     ),
 )  # fmt: skip
 _REST: Final = frozenset({"rest", "others", "remainder", "remaining blocks", "other blocks",
-                          "everything else", "all others"})  # fmt: skip
+"remaining ones",
+                          "other ones", "everything else", "all others"})  # fmt: skip
 #: What is not asked for.
 _UNASKED: Final = _all_as(
     (),
@@ -141,10 +154,18 @@ _UNASKED: Final = _all_as(
             "i do not care about REST", "i do not care where REST goes",
             "i do not care where REST go", "do not care about REST", "REST does not matter",
             "REST do not matter", "REST anywhere", "REST can go anywhere", "REST wherever",
-            "do not touch REST", "never mind REST",
+            "do not touch REST", "never mind REST", "do not worry about REST", "ignore REST",
+            "where REST go is up to you", "where REST goes is up to you", "REST is up to you",
+            "REST are up to you", "REST wherever you like", "REST wherever you want",
+            "REST as you like", "REST as you wish", "put REST wherever you like",
+            "put REST wherever you want", "put REST anywhere", "do whatever you like with REST",
+            "do whatever you want with REST", "do what you like with REST",
+            "do what you want with REST",
         )
     ),
 )  # fmt: skip
+#: Nothing behind what they are said of; in front they make a condition of what follows.
+PROVISOS: Final = frozenset({("as", "long", "as"), ("provided", "that")})
 #: Several words that stand for others, the longest first; looked for everywhere.
 MERGED: Final[Wordings] = {
     **_SIDE_BY_SIDE, **_NUMBERS, **_NOTHING, **_UNASKED, **_CORRECTIONS,
@@ -169,6 +190,39 @@ MERGED: Final[Wordings] = {
     ("has", "to"): ("must",),
     ("have", "to"): ("must",),
     ("lets",): ("let",),
+    ("avoid",): ("do", "not"),
+    ("rather", "not"): ("not",),
+    ("everybody",): ("everything",),
+    ("for", "you", "to"): (),
+    ("instead", "of"): (INSTEAD,),
+    ("rather", "than"): (INSTEAD,),
+    ("as", "opposed", "to"): (INSTEAD,),
+    ("is", "what", "i", "want"): ("must", "be"),
+    ("is", "what", "i", "need"): ("must", "be"),
+    ("is", "what", "should", "be"): ("must", "be"),
+    ("is", "what", "i", "would", "like"): ("must", "be"),
+    # What should have been is no goal.
+    **{("have", done): (BYGONE,) for done in ("put", "placed", "moved", "stacked", "been")},
+    ("back", "on"): ("on",),
+    ("back", "onto"): ("on",),
+    ("back", "in"): ("in",),
+    **{
+        (one, "and", other, noun): (f"{one} stack", "and", f"{other} stack")
+        for one, other in permutations(("left", "middle", "right"), 2)
+        for noun in ("stack", "stacks", "pile", "piles", "tower", "towers", "place", "places")
+    },
+    **{("to", "its", side): (side, "of", "it") for side in ("left", "right")},
+    **{("on", "its", side): (side, "of", "it") for side in ("left", "right")},
+    **{
+        ("different", place, word): ("different", place, "as")
+        for place in ("stack", "tower", "pile", "place", "column")
+        for word in ("than", "from", "to")
+    },
+    ("under", "no", "circumstances"): ("not",),
+    ("at", "no", "time"): ("not",),
+    ("in", "no", "case"): ("not",),
+    ("on", "no", "account"): ("not",),
+    ("refrain", "from"): ("do", "not"),
     **dict.fromkeys(
         (
             ("not", "have", "to"),
@@ -180,6 +234,7 @@ MERGED: Final[Wordings] = {
             ("not", "necessary"),
             ("not", "required"),
             ("no", "need", "for"),
+            ("no", "need", "that"),
             ("no", "need", "to"),
             ("not", "mind"),
             ("not", "care"),
@@ -231,8 +286,14 @@ MERGED: Final[Wordings] = {
     ("want", "you"): ("want",),
     ("need", "you"): ("want",),
     ("like", "you"): ("want",),
-    ("build", "a", "tower"): ("build",),
-    ("make", "a", "tower"): ("build",),
-    ("build", "a", "stack"): ("build",),
-    ("make", "a", "stack"): ("build",),
+    **{
+        (verb, "a", noun, *of): ("build",)
+        for verb in ("build", "make", "create", "construct", "form")
+        for noun in ("tower", "stack")
+        for of in ((), ("of",))
+    },
+    ("made", "of"): ("with",),
+    ("consisting", "of"): ("with",),
+    ("made", "up", "of"): ("with",),
+    ("composed", "of"): ("with",),
 }  # fmt: skip
