@@ -15,7 +15,10 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from scipy.optimize import linprog
 
-from motion_node.timing.fastest import SHORTEST, JointLimits, TimeGrid, fastest
+from motion_node.timing.fastest import TimeGrid, fastest
+from motion_node.timing.limits import JointLimits
+from motion_node.timing.reachability import SHORTEST, fastest_squares, squares_by_numpy
+from motion_node.timing.smoothing import smoothed, smoothed_by_numpy
 
 Array = NDArray[np.float64]
 
@@ -143,3 +146,30 @@ def _by_linear_programs(q: Array, limits: JointLimits, parts: int) -> float:
         squares.append(max(0.0, x + 2 * step * best[1]))
     speeds = np.sqrt(squares)
     return float((2 * step / (speeds[1:] + speeds[:-1])).sum())
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 7), st.booleans())
+def test_c_and_numpy_time_alike(seed: int, joints: int, still: bool) -> None:
+    q, limits = some_paths(seed, joints, 3), some_limits(seed, joints)
+    if still:
+        q[..., 0] = q[:1, :1, 0]
+    spline = CubicSpline(np.linspace(0.0, 1.0, q.shape[1]), q, axis=1, bc_type="clamped")
+    points = np.linspace(0.0, 1.0, 101)
+    positions, slopes, bends = (spline(points, order) for order in range(3))
+    found = [own(slopes, bends, limits, 0.01) for own in (fastest_squares, squares_by_numpy)]
+    np.testing.assert_allclose(*found, rtol=1e-9)
+    slow = found[0].min(axis=0)[0] / 2
+    later = [own(slopes, bends, limits, 0.01, slow) for own in (fastest_squares, squares_by_numpy)]
+    np.testing.assert_allclose(*later, rtol=1e-9)
+    for own in (fastest_squares, squares_by_numpy):
+        with pytest.raises(ValueError, match="too fast to come to rest"):
+            own(slopes, bends, limits, 0.01, 1.1 * found[0].max())
+    speeds = np.sqrt(found[0])
+    times = np.cumsum(0.02 / (speeds[:, 1:] + speeds[:, :-1]), axis=1)
+    times = np.concatenate([np.zeros((3, 1)), times], axis=1)
+    before = np.random.default_rng(seed).normal(size=joints)
+    given_ = (times, positions, slopes * speeds[:, :, None], before, 0.015, np.array([3, 90, 250]))
+    mine, its = (own(*given_, limits) for own in (smoothed, smoothed_by_numpy))
+    for name, values in vars(mine).items():
+        np.testing.assert_allclose(values, vars(its)[name], rtol=1e-7, atol=1e-9, err_msg=name)

@@ -48,7 +48,7 @@ from .robots import PANDA, Arm
 from .robots.inverse_kinematics import InverseKinematics
 from .robots.model import ArmModel
 from .settings import Settings
-from .timing.fastest import JointLimits
+from .timing.limits import JointLimits
 from .timing.time_paths import time_paths
 from .timing.trajectory import Trajectory
 
