@@ -168,8 +168,12 @@ def test_c_and_numpy_time_alike(seed: int, joints: int, still: bool) -> None:
     speeds = np.sqrt(found[0])
     times = np.cumsum(0.02 / (speeds[:, 1:] + speeds[:, :-1]), axis=1)
     times = np.concatenate([np.zeros((3, 1)), times], axis=1)
-    before = np.random.default_rng(seed).normal(size=joints)
-    given_ = (times, positions, slopes * speeds[:, :, None], before, 0.015, np.array([3, 90, 250]))
-    mine, its = (own(*given_, limits) for own in (smoothed, smoothed_by_numpy))
-    for name, values in vars(mine).items():
-        np.testing.assert_allclose(values, vars(its)[name], rtol=1e-7, atol=1e-9, err_msg=name)
+    velocities = slopes * speeds[:, :, None]
+    cases = [(0, 3, np.array([3, 90, 250])), (30, 1, np.array([120]))]  # one moves already
+    for begin, count, counts in cases:
+        ways = [values[:count, begin:] for values in (times, positions, velocities)]
+        ways[0] = ways[0] - ways[0][:, :1]
+        given_ = (*ways, velocities[0, begin], 0.015, counts, limits)
+        mine, its = (own(*given_) for own in (smoothed, smoothed_by_numpy))
+        for name, values in vars(mine).items():
+            np.testing.assert_allclose(values, vars(its)[name], rtol=1e-6, atol=1e-7, err_msg=name)
