@@ -12,7 +12,8 @@ from obstacle_scenes import WIDE, pen, wall
 from refusal_tables import Refused, followed
 
 from motion_node.certificate import Suggestions
-from motion_node.changes import Change, Table
+from motion_node.certificate.changes import Change
+from motion_node.certificate.levers import Table
 from motion_node.errors import InfeasibleError
 from motion_node.obstacles import Obstacle
 from motion_node.planner import MotionPlanner

@@ -157,15 +157,16 @@ def test_c_and_numpy_time_alike(seed: int, joints: int, still: bool) -> None:
     spline = CubicSpline(np.linspace(0.0, 1.0, q.shape[1]), q, axis=1, bc_type="clamped")
     points = np.linspace(0.0, 1.0, 101)
     positions, slopes, bends = (spline(points, order) for order in range(3))
-    found = [own(slopes, bends, limits, 0.01) for own in (fastest_squares, squares_by_numpy)]
-    np.testing.assert_allclose(*found, rtol=1e-9)
-    slow = found[0].min(axis=0)[0] / 2
-    later = [own(slopes, bends, limits, 0.01, slow) for own in (fastest_squares, squares_by_numpy)]
-    np.testing.assert_allclose(*later, rtol=1e-9)
-    for own in (fastest_squares, squares_by_numpy):
+    both = (fastest_squares, squares_by_numpy)
+    found, other = (own(slopes, bends, limits, 0.01) for own in both)
+    np.testing.assert_allclose(found, other, rtol=1e-9)
+    slow = found.min(axis=0)[0] / 2
+    later, other = (own(slopes, bends, limits, 0.01, slow) for own in both)
+    np.testing.assert_allclose(later, other, rtol=1e-9)
+    for own in both:
         with pytest.raises(ValueError, match="too fast to come to rest"):
-            own(slopes, bends, limits, 0.01, 1.1 * found[0].max())
-    speeds = np.sqrt(found[0])
+            own(slopes, bends, limits, 0.01, 1.1 * found.max())
+    speeds = np.sqrt(found)
     times = np.cumsum(0.02 / (speeds[:, 1:] + speeds[:, :-1]), axis=1)
     times = np.concatenate([np.zeros((3, 1)), times], axis=1)
     velocities = slopes * speeds[:, :, None]

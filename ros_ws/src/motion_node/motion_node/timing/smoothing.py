@@ -125,7 +125,7 @@ def _rested(values: Array, first: Array, last: Array) -> Array:
 
 
 def _slower(
-    positions: Array, velocities: Array, durations: Array, stops: Array, limits: JointLimits
+    positions: Array, velocities: Array, durations: Array, stops: IntArray, limits: JointLimits
 ) -> Array:
     """By how much ways must be slower for the cubics between their points to keep the limits.
 

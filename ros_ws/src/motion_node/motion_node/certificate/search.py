@@ -10,11 +10,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import partial
 from heapq import heapify, heappop, heappush
-from itertools import islice, product
 from typing import Final
 
 import numpy as np
@@ -22,36 +19,28 @@ from numpy.typing import NDArray
 
 from scene_graph import Move, SceneGraph, base_index, base_name
 
-from .blocks import read_scene
-from .bounds import Keyframes
-from .changes import (
-    Change,
+from ..blocks import read_scene
+from ..dense_check import check as dense_check
+from ..errors import PATH, InfeasibleError
+from ..phases import PLACE, Phase
+from ..planner import MotionPlanner
+from ..refining import objection
+from .changes import Change, as_can_be_done
+from .levers import (
     Lever,
     ObstacleLever,
     StackLever,
     Table,
+    TowerLever,
     WidthLever,
     X,
     Y,
     height_lever,
-    in_whole_millimetres,
 )
-from .constraints import Clearances
-from .dense_check import check as dense_check
-from .errors import PATH, InfeasibleError
-from .expand import Choice, expand
-from .nlp import Demand
-from .phases import HOME, PLACE, Phase
-from .planner import MotionPlanner
-from .refining import objection
+from .tries import UNIT, Tries, Try, among
 
 Array = NDArray[np.float64]
 
-#: By so much levers are pulled to see what they do [m].
-UNIT: Final = 1e-3
-#: Starting points of the elastic problem of a switch, and of a way.
-_POSE_STARTS: Final = 2
-_PATH_STARTS: Final = 2
 #: So many things that are in the way are considered, the first that are found.
 _MOST: Final = 4
 #: Added first to a change that should be enough and is not; twice as much the next time [m].
@@ -62,9 +51,6 @@ _CHECKED: Final = 30
 PATIENCE: Final = 10.0
 #: Nor longer than this on a machine that has a lot else to do [s].
 LONGEST: Final = 60.0
-
-#: What is asked at the end of a phase, or along it, on a table.
-DemandsOn = Callable[[Table], list[Demand]]
 
 
 @dataclass(frozen=True)
@@ -115,7 +101,7 @@ class Suggestions:
             late = time.monotonic() - begin > LONGEST
             return late or time.thread_time() - worked > PATIENCE or stopped()
 
-        with _among(self._planner, table):
+        with among(self._planner, table):
             change = search.smallest(error, over)
         if change is None:
             return None
@@ -138,21 +124,6 @@ class _Open:
     growth: float = field(default=_GROWTH, compare=False)
 
 
-@dataclass(frozen=True)
-class _Try:
-    """An elastic problem with a starting point.
-
-    Attributes:
-        least: its smallest changes, given the demands after each change and how far each may go.
-        demands_on: what is asked on a table.
-        missed: what the starting point misses, each row in words.
-    """
-
-    least: Callable[[Sequence[Sequence[Demand]], tuple[Array, Array]], Array | None]
-    demands_on: DemandsOn
-    missed: list[str]
-
-
 class _Search:
     """For one refused plan."""
 
@@ -167,8 +138,8 @@ class _Search:
         self._planner, self._table, self._moves = planner, table, moves
         self._arm, self._fingers = arm, fingers
         self._stacks = table.graph.stacks()
-        floor = read_scene(table.graph).floor
-        self._clear = Clearances(planner.settings.path.margin, floor)
+        self._floor = read_scene(table.graph).floor
+        self._tries = Tries(planner, table, moves, arm)
 
     def smallest(self, error: InfeasibleError, over: Callable[[], bool]) -> Change | None:
         """The smallest change that is found with which the plan can be carried out.
@@ -176,11 +147,11 @@ class _Search:
         Candidates are checked in the order of their sizes; one with which something else is
         violated is made larger by what that takes.
         """
-        block = self._phases(self._table, ())[2 * min(error.move, len(self._moves) - 1)]
+        block = self._tries.moved(error, self._table)
         if narrower := self._narrower(block):
             first = [narrower]
         else:
-            tries = self._tries(error, self._table)
+            tries = self._tries.of(error, self._table)
             found = [
                 self._mended(levers, self._table, hopeful, Change((), ()), over)
                 for levers, hopeful in self._families(error, tries)
@@ -199,7 +170,7 @@ class _Search:
                 return here.change
             more, growth = None, here.growth
             if _what(again) not in here.mends:
-                tries = self._tries(again, table)
+                tries = self._tries.of(again, table)
                 more = self._mended(here.change.levers, table, tries, here.change, over)
             if more is None or more.beside(here.change) < growth:
                 more, growth = here.change.grown(growth), 2 * growth
@@ -211,7 +182,7 @@ class _Search:
     def _refusal(self, table: Table) -> InfeasibleError | None:
         """Why the plan cannot be carried out on a table; None: it can."""
         planner = self._planner
-        with _among(planner, table):
+        with among(planner, table):
             try:
                 motion = planner.solve(table.graph, self._moves, self._arm, self._fingers)
             except InfeasibleError as error:
@@ -220,17 +191,6 @@ class _Search:
             around = (planner.model, motion.trajectory, scene, table.obstacles)
             contacts = dense_check(*around, floor=scene.floor).contacts
         return objection(contacts[0]) if contacts else None
-
-    def _phases(self, table: Table, choices: Sequence[Choice]) -> list[Phase]:
-        settings, gripper = self._planner.settings, self._planner.arm.gripper
-        scene = read_scene(table.graph)
-        return expand(
-            scene, self._moves, gripper, settings.phases, settings.squeeze, choices=choices
-        )
-
-    def _choices(self, block: Phase, kind: str) -> list[Choice]:
-        across = (False, True) if kind == PLACE else (False,)
-        return [Choice(grasp, turn) for turn, grasp in product(across, range(block.grasps))]
 
     def _narrower(self, phase: Phase) -> Change | None:
         """For a block that the open fingers do not go around in any way."""
@@ -244,63 +204,13 @@ class _Search:
             width, axis = min((abs(item.size[a] - grasp.width), a) for a in range(3))
             width = item.size[axis]
         lever = WidthLever(phase.object_name, axis, width)
-        return in_whole_millimetres([lever], [width - widest])
-
-    def _tries(self, error: InfeasibleError, table: Table) -> list[_Try]:
-        """Elastic problems of what was violated on a table, for each way to take the block."""
-        move = min(error.move, len(self._moves) - 1)
-        block = self._phases(table, ())[2 * move]
-        find = self._along_way if error.bound == PATH else self._at_switch
-        tries = list[_Try]()
-        for choice in self._choices(block, error.phase):
-            choices = [Choice()] * len(self._moves)
-            choices[move] = choice
-            tries += find(error, table, choices)
-        return tries
-
-    def _at_switch(
-        self, error: InfeasibleError, table: Table, choices: Sequence[Choice]
-    ) -> Iterator[_Try]:
-        """The elastic problem of one switch (P1)."""
-        index = 2 * error.move + (error.phase == PLACE)
-        keyframes, _ = self._planner.prepare(len(self._stacks))
-        problems = keyframes.problems
-
-        def demands_on(other: Table) -> list[Demand]:
-            with _among(self._planner, other):
-                return problems.demands([self._phases(other, choices)[index]], self._clear)
-
-        phase, demands = self._phases(table, choices)[index], demands_on(table)
-        for guess in keyframes.poses.guesses([phase], demands)[0][:_POSE_STARTS]:
-            least = partial(problems.least_changes, guess.q, demands, UNIT)
-            yield _Try(least, demands_on, problems.missed(guess.q, demands, phase))
-
-    def _along_way(
-        self, error: InfeasibleError, table: Table, choices: Sequence[Choice]
-    ) -> Iterator[_Try]:
-        """The elastic problem of one way (P3), its ends as P2 leaves them."""
-        phases = self._phases(table, choices)
-        keyframes, path = self._planner.prepare(len(self._stacks))
-        index = min(2 * error.move + (error.phase == PLACE), len(phases) - 1)
-        with _among(self._planner, table):
-            ends = self._ends(keyframes, phases, index)
-        if ends is None:
-            return
-
-        def demands_on(other: Table) -> list[Demand]:
-            with _among(self._planner, other):
-                return path.demands(self._phases(other, choices)[index], ends, self._clear)
-
-        phase, demands = phases[index], demands_on(table)
-        for start in islice(path.straight_starts(phase, ends, self._clear), _PATH_STARTS):
-            least = partial(path.least_changes, start, demands, UNIT)
-            yield _Try(least, demands_on, path.missed(start, demands, phase))
+        return as_can_be_done([lever], [width - widest])
 
     def _mended(
         self,
         levers: Sequence[Lever],
         table: Table,
-        tries: Sequence[_Try],
+        tries: Sequence[Try],
         before: Change,
         over: Callable[[], bool],
     ) -> Change | None:
@@ -320,28 +230,25 @@ class _Search:
                 best = amounts
         if best is None:
             return None
-        found = in_whole_millimetres(levers, (np.array(pulled) + best).tolist())
+        found = as_can_be_done(levers, (np.array(pulled) + best).tolist())
         return found if found is not None and found.amounts != before.amounts else None
-
-    def _ends(
-        self, keyframes: Keyframes, phases: Sequence[Phase], index: int
-    ) -> tuple[Array, Array] | None:
-        switching = [phase for phase in phases if phase.kind != HOME]
-        try:
-            found = keyframes.solve(self._arm, switching, self._clear, sampled=True)
-        except InfeasibleError:
-            return None
-        configurations = [self._arm, *found, self._planner.model.home]
-        return configurations[index], configurations[index + 1]
 
     def _stack(self, index: int) -> tuple[Lever, ...]:
         names = self._stacks[index]
         place = not names or any(move.target == index for move in self._moves)
         return StackLever(index, X, place, names), StackLever(index, Y, place, names)
 
+    def _tower(self, index: int) -> TowerLever | None:
+        """The blocks of a stack, where it has any and the plan takes none of them."""
+        names = self._stacks[index][::-1]
+        if not names or any(move.source == index for move in self._moves):
+            return None
+        heights = tuple(self._table.graph.object(name).size[2] for name in names)
+        return TowerLever(index, names, heights)
+
     def _families(
-        self, error: InfeasibleError, tries: Sequence[_Try]
-    ) -> Iterator[tuple[tuple[Lever, ...], list[_Try]]]:
+        self, error: InfeasibleError, tries: Sequence[Try]
+    ) -> Iterator[tuple[tuple[Lever, ...], list[Try]]]:
         """Levers that are pulled together, with the elastic problems in which that may be enough.
 
         What the hand goes to is one, each thing that is in the way, then all of these: enough is
@@ -352,6 +259,8 @@ class _Search:
         own = ends[error.phase == PLACE]
         if error.bound != PATH:
             yield self._stack(own), list(tries)
+        if error.phase == PLACE and (tower := self._tower(own)):
+            yield (tower,), list(tries)
         known = {item.name for item in self._table.obstacles}
         known |= {base_name(i) for i in range(len(self._stacks)) if i not in ends}
 
@@ -360,13 +269,13 @@ class _Search:
 
         others = in_the_way([error.constraint, *(row for item in tries for row in item.missed)])
 
-        def enough(*names: str) -> list[_Try]:
+        def enough(*names: str) -> list[Try]:
             return [item for item in tries if set(in_the_way(item.missed)) <= set(names)]
 
         known_obstacles = {item.name for item in self._table.obstacles}
         obstacles = [name for name in others if name in known_obstacles][:_MOST]
         heights: list[Lever] = [
-            height_lever(self._table.obstacles, name, self._clear.floor) for name in obstacles
+            height_lever(self._table.obstacles, name, self._floor) for name in obstacles
         ]
         sideways = [(ObstacleLever(name, X), ObstacleLever(name, Y)) for name in obstacles]
         for name, height, pair in zip(obstacles, heights, sideways):
@@ -385,17 +294,3 @@ class _Search:
 
 def _what(error: InfeasibleError) -> tuple[str, int, str]:
     return error.bound, error.move, error.phase
-
-
-@contextmanager
-def _among(planner: MotionPlanner, table: Table) -> Iterator[None]:
-    """The planner among a table's obstacles, for a while."""
-    before = planner.obstacles
-    if table.obstacles == before or not table.obstacles:
-        yield
-        return
-    planner.surround(table.obstacles)
-    try:
-        yield
-    finally:
-        planner.surround(before)
