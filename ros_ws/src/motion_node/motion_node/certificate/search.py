@@ -169,7 +169,8 @@ class _Search:
             if again is None:
                 return here.change
             more, growth = None, here.growth
-            if _what(again) not in here.mends:
+            by_blocks = all(isinstance(lever, TowerLever) for lever in here.change.levers)
+            if _what(again) not in here.mends and not by_blocks:  # whose steps are great anyway
                 tries = self._tries.of(again, table)
                 more = self._mended(here.change.levers, table, tries, here.change, over)
             if more is None or more.beside(here.change) < growth:

@@ -45,11 +45,13 @@ class Try:
         least: its smallest changes, given the demands after each change and how far each may go.
         demands_on: what is asked on a table.
         missed: what the starting point misses, each row in words.
+        same: equal for those that are the same problem from the same start.
     """
 
     least: Callable[[Sequence[Sequence[Demand]], tuple[Array, Array]], Array | None]
     demands_on: DemandsOn
     missed: list[str]
+    same: bytes
 
 
 class Tries:
@@ -76,12 +78,14 @@ class Tries:
         move = min(error.move, len(self._moves) - 1)
         block = self.moved(error, table)
         find = self._along_way if error.bound == PATH else self._at_switch
-        tries = list[Try]()
+        tries = dict[bytes, Try]()
         for choice in self._choices(block, error.phase):
             choices = [Choice()] * len(self._moves)
             choices[move] = choice
-            tries += find(error, table, choices)
-        return tries
+            # A block as deep as wide is put down alike from either side.
+            for item in find(error, table, choices):
+                tries.setdefault(item.same, item)
+        return list(tries.values())
 
     def _at_switch(
         self, error: InfeasibleError, table: Table, choices: Sequence[Choice]
@@ -98,7 +102,8 @@ class Tries:
         phase, demands = self._phases(table, choices)[index], demands_on(table)
         for guess in keyframes.poses.guesses([phase], demands)[0][:_POSE_STARTS]:
             least = partial(problems.least_changes, guess.q, demands, UNIT)
-            yield Try(least, demands_on, problems.missed(guess.q, demands, phase))
+            missed = problems.missed(guess.q, demands, phase)
+            yield Try(least, demands_on, missed, _same(guess.q, demands))
 
     def _along_way(
         self, error: InfeasibleError, table: Table, choices: Sequence[Choice]
@@ -119,7 +124,8 @@ class Tries:
         phase, demands = phases[index], demands_on(table)
         for start in islice(path.straight_starts(phase, ends, self._clear), _PATH_STARTS):
             least = partial(path.least_changes, start, demands, UNIT)
-            yield Try(least, demands_on, path.missed(start, demands, phase))
+            missed = path.missed(start, demands, phase)
+            yield Try(least, demands_on, missed, _same(start, demands))
 
     def _phases(self, table: Table, choices: Sequence[Choice]) -> list[Phase]:
         settings, gripper = self._planner.settings, self._planner.arm.gripper
@@ -142,6 +148,11 @@ class Tries:
             return None
         configurations = [self._arm, *found, self._planner.model.home]
         return configurations[index], configurations[index + 1]
+
+
+def _same(start: Array, demands: Sequence[Demand]) -> bytes:
+    arrays = [start, *(a for d in demands for a in (d.parameters, d.lower, d.upper))]
+    return b"".join((np.round(array, 4) + 0.0).tobytes() for array in arrays)
 
 
 @contextmanager
