@@ -2,9 +2,9 @@
 """``make bench-refusals``: moves that cannot be, whether the reason is right, and what would help.
 
 Generated tables (seeds from 1000) of which it is known why the move cannot be. The change that is
-suggested is made by its words alone, the move is solved anew, and pybullet's meshes say whether its
-motion touches an obstacle. Without a node. Each table leaves a file in ``runs/refusals``: a run that
-was stopped can be taken up again. Writes ``benchmarks/results/refusals.json``.
+suggested is made by its words alone, the move is solved anew, and pybullet's meshes say whether
+its motion touches an obstacle. Without a node. Each table leaves a file in ``runs/refusals``: a run
+that was stopped can be taken up again. Writes ``benchmarks/results/refusals.json``.
 """
 
 from __future__ import annotations
