@@ -47,6 +47,14 @@ class Change:
         amounts = _within(self.levers, more)
         return None if amounts == self.amounts else replace(self, amounts=amounts)
 
+    def between(self, less: Change) -> Change | None:
+        """Half way to a lesser change of the same levers; None where that is as much as this."""
+        middle = [
+            lever.rounded((one + other) / 2)
+            for lever, one, other in zip(self.levers, self.amounts, less.amounts)
+        ]
+        return None if tuple(middle) == self.amounts else replace(self, amounts=tuple(middle))
+
     def words(self, table: Table) -> str:
         """Such as "move green_box 32 mm to the left and 4 mm nearer to the arm"."""
         parts: dict[str, list[str]] = {}

@@ -37,6 +37,7 @@ from .levers import (
     Y,
     height_lever,
 )
+from .pulling import pulled
 from .tries import UNIT, Tries, Try, among
 
 Array = NDArray[np.float64]
@@ -44,7 +45,11 @@ Array = NDArray[np.float64]
 #: So many things that are in the way are considered, the first that are found.
 _MOST: Final = 4
 #: Added first to a change that should be enough and is not; twice as much the next time [m].
-_GROWTH: Final = 0.005
+_GROWTH: Final = 0.01
+#: Changes that are enough and too little are as good as one if they are this near [m].
+_NEAR: Final = 0.005
+#: So often the way from too little to enough is halved.
+_HALVINGS: Final = 4
 #: So many changes are checked at most.
 _CHECKED: Final = 30
 #: Nothing is looked for longer, in time of the processor [s].
@@ -115,6 +120,7 @@ class _Open:
     Attributes:
         mends: the bounds, moves and phases that it is meant for.
         growth: what is added at least if it is not enough [m].
+        little: a change of the same levers that is too little.
     """
 
     size: float
@@ -122,6 +128,7 @@ class _Open:
     change: Change = field(compare=False)
     mends: frozenset[tuple[str, int, str]] = field(compare=False)
     growth: float = field(default=_GROWTH, compare=False)
+    little: Change | None = field(default=None, compare=False)
 
 
 class _Search:
@@ -152,11 +159,7 @@ class _Search:
             first = [narrower]
         else:
             tries = self._tries.of(error, self._table)
-            found = [
-                self._mended(levers, self._table, hopeful, Change((), ()), over)
-                for levers, hopeful in self._families(error, tries)
-            ]
-            first = [change for change in found if change is not None]
+            first = list(self._first(error, tries, over))
         what = frozenset({_what(error)})
         waiting = [_Open(c.size, index, c, what) for index, c in enumerate(first)]
         heapify(waiting)
@@ -167,18 +170,52 @@ class _Search:
             table = here.change.made(self._table)
             again = self._refusal(table)
             if again is None:
-                return here.change
+                return self._less(here, over)
             more, growth = None, here.growth
             by_blocks = all(isinstance(lever, TowerLever) for lever in here.change.levers)
-            if _what(again) not in here.mends and not by_blocks:  # whose steps are great anyway
+            # Blocks are great steps anyway, and of ways elastic problems take longer than trying.
+            if _what(again) not in here.mends and not by_blocks and again.bound != PATH:
                 tries = self._tries.of(again, table)
                 more = self._mended(here.change.levers, table, tries, here.change, over)
             if more is None or more.beside(here.change) < growth:
                 more, growth = here.change.grown(growth), 2 * growth
             if more is not None:
                 mends = here.mends | {_what(again)}
-                heappush(waiting, _Open(more.size, count, more, mends, growth))
+                heappush(waiting, _Open(more.size, count, more, mends, growth, here.change))
         return None
+
+    def _first(
+        self, error: InfeasibleError, tries: Sequence[Try], over: Callable[[], bool]
+    ) -> Iterator[Change]:
+        """What may be enough, of each family of levers."""
+        families = list(self._families(error, tries))
+        if error.bound == PATH:
+            for levers, hopeful in families:
+                if change := self._mended(levers, self._table, hopeful, Change((), ()), over):
+                    yield change
+            return
+        for levers, hopeful in families:
+            change = self._mended(levers, self._table, hopeful, Change((), ()), over)
+            change = change or pulled(
+                levers, self._table, lambda table: self._tries.possible(error, table), over
+            )
+            if change is not None:
+                yield change
+
+    def _less(self, here: _Open, over: Callable[[], bool]) -> Change:
+        """As little of a change that is enough as a few trials show."""
+        enough, little = here.change, here.little
+        for _ in range(_HALVINGS):
+            if little is None or enough.beside(little) <= _NEAR or over():
+                break
+            middle = enough.between(little)
+            if middle is None:
+                break
+            if self._refusal(middle.made(self._table)) is None:
+                enough = middle
+            else:
+                little = middle
+        return enough
 
     def _refusal(self, table: Table) -> InfeasibleError | None:
         """Why the plan cannot be carried out on a table; None: it can."""

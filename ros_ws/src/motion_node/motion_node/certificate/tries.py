@@ -87,12 +87,31 @@ class Tries:
                 tries.setdefault(item.same, item)
         return list(tries.values())
 
+    def possible(self, error: InfeasibleError, table: Table) -> bool:
+        """Whether the switch that was refused has a pose on a table, however it is taken."""
+        move, keyframes = min(error.move, len(self._moves) - 1), self._keyframes()
+        index, seen = 2 * move + (error.phase == PLACE), set[bytes]()
+        with among(self._planner, table):
+            for choice in self._choices(self.moved(error, table), error.phase):
+                choices = [Choice()] * len(self._moves)
+                choices[move] = choice
+                phase = self._phases(table, choices)[index]
+                demands = keyframes.problems.demands([phase], self._clear)
+                same = _same(self._arm, demands)
+                if same not in seen and keyframes.among.possible(phase, demands):
+                    return True
+                seen.add(same)
+        return False
+
+    def _keyframes(self) -> Keyframes:
+        return self._planner.prepare(self._stacks)[0]
+
     def _at_switch(
         self, error: InfeasibleError, table: Table, choices: Sequence[Choice]
     ) -> Iterator[Try]:
         """The elastic problem of one switch (P1)."""
         index = 2 * error.move + (error.phase == PLACE)
-        keyframes, _ = self._planner.prepare(self._stacks)
+        keyframes = self._keyframes()
         problems = keyframes.problems
 
         def demands_on(other: Table) -> list[Demand]:
