@@ -13,7 +13,8 @@ from refusal_tables import Refused, followed
 
 from motion_node.certificate import Suggestions
 from motion_node.certificate.changes import Change
-from motion_node.certificate.levers import Table, TowerLever
+from motion_node.certificate.levers import Table
+from motion_node.certificate.tower_lever import TowerLever
 from motion_node.errors import InfeasibleError
 from motion_node.obstacles import Obstacle
 from motion_node.planner import MotionPlanner
