@@ -201,7 +201,7 @@ class PathProblem:
         if not self.obstacles:
             yield straight, True
             for attempt in _TRIES[1:]:
-                yield _joined(guesses(ways, self._inverse, *attempt)), False
+                yield _joined(guesses(ways, self._inverse, *attempt)), True
             return
         hopeful = self._missed(straight, demands) < _HOPEFUL
         if hopeful:
