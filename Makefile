@@ -95,8 +95,8 @@ bench-motion: setup  ## time to find motions, and how long they take; PEERS=venv
 bench-obstacles: setup  ## goals among walls, narrow places and places out of reach; QUICK=1
 	@$(RUN) python benchmarks/bench_obstacles.py
 
-bench-refusals: setup  ## moves that cannot be: whether the reason is right, and what would help; QUICK=1
-	@$(RUN) python benchmarks/bench_refusals.py
+bench-refusals: setup  ## moves that cannot be: whether the reason is right, and what would help; RESUME=1 QUICK=1
+	@$(RUN) python benchmarks/bench_refusals.py $(if $(RESUME),--resume)
 
 bench-planner: setup  ## search times, lengths and bounds; FD=venv with up-fast-downward QUICK=1
 	@$(RUN) python benchmarks/bench_planner.py $(if $(FD),--fd "$(FD)")

@@ -29,7 +29,7 @@ from motion_node.correcting import corrected
 from motion_node.errors import InfeasibleError
 from motion_node.phases import PICK
 from motion_node.planner import Motion, MotionPlanner
-from motion_node.timing.fastest import JointLimits
+from motion_node.timing.limits import JointLimits
 from scene_graph import Move, SceneGraph, SceneObject
 
 Array = NDArray[np.float64]

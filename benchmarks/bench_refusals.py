@@ -2,15 +2,17 @@
 """``make bench-refusals``: moves that cannot be, whether the reason is right, and what would help.
 
 Generated tables (seeds from 1000) of which it is known why the move cannot be. The change that is
-suggested is made by its words alone, the move is solved anew, and pybullet's meshes say whether its
-motion touches an obstacle. Without a node. Writes ``benchmarks/results/refusals.json``.
+suggested is made by its words alone, the move is solved anew, and pybullet's meshes say whether
+its motion touches an obstacle. Without a node. Each table leaves a file in ``runs/refusals``: a run
+that was stopped can be taken up again. Writes ``benchmarks/results/refusals.json``.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import time
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Final
 
@@ -31,6 +33,7 @@ from motion_node.planner import MotionPlanner
 FIRST_SEED: Final = 1000
 #: Problems are built for so many obstacles.
 MOST: Final = 4
+FOLDER: Final = Path(__file__).parent.parent / "runs" / "refusals"
 
 
 @dataclass(frozen=True)
@@ -38,14 +41,17 @@ class Result:
     """What was said of one table.
 
     Attributes:
+        kind: why the move cannot be, as the table was made.
         reason: empty: the move was not refused.
+        right: whether the reason is that for which the table was made.
         feasible: whether it can be once the suggestion is followed; ``objection``: why not.
         refusing, suggesting: time of the processor [s].
     """
 
-    table: Refused
+    kind: str
     seed: int
     reason: str = ""
+    right: bool = False
     violation: float = 0.0
     suggestion: str = ""
     millimetres: float = 0.0
@@ -53,11 +59,6 @@ class Result:
     objection: str = ""
     refusing: float = 0.0
     suggesting: float = 0.0
-
-    @property
-    def right(self) -> bool:
-        """Whether the reason is that for which the table was made."""
-        return any(word in self.reason for word in self.table.words)
 
 
 class Bench:
@@ -77,14 +78,15 @@ class Bench:
         begin = time.process_time()
         error = self._refusal(table)
         if error is None:
-            return Result(table, seed)
+            return Result(table.kind, seed)
         middle = time.process_time()
         planner = self._planner(table)
         found = Suggestions(planner).suggest(
             table.graph, [table.move], planner.model.home, np.full(2, 0.04), error
         )
         times = (middle - begin, time.process_time() - middle)
-        told = (table, seed, error.constraint, error.violation)
+        right = any(word in error.constraint for word in table.words)
+        told = (table.kind, seed, error.constraint, right, error.violation)
         if found is None:
             return Result(*told, refusing=times[0], suggesting=times[1])
         objection = self._objection(followed(table, found.words))
@@ -123,11 +125,20 @@ class Bench:
         return "a mesh touches an obstacle" if touched else ""
 
 
+def kept(bench: Bench, seed: int, resume: bool) -> Result:
+    """The result of a seed, measured unless its file is there and may be used."""
+    path = FOLDER / f"{seed}.json"
+    if not resume or not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(asdict(bench.one(seed)), indent=1))
+    return Result(**json.loads(path.read_text()))
+
+
 def rows_of(results: list[Result]) -> list[Row]:
     """The published numbers."""
     rows = list[Row]()
-    for kind in (*dict.fromkeys(item.table.kind for item in results), "all"):
-        own = [item for item in results if kind in (item.table.kind, "all")]
+    for kind in (*dict.fromkeys(item.kind for item in results), "all"):
+        own = [item for item in results if kind in (item.kind, "all")]
         right, helped = sum(item.right for item in own), sum(item.feasible for item in own)
         told = [item.millimetres for item in own if item.suggestion]
         bounds = (">= 0.99", ">= 0.95") if kind == "all" else (None, None)
@@ -159,14 +170,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seed", type=int, default=FIRST_SEED, help="first one; to tune: not 1000")
     parser.add_argument("--n", type=int, default=12 if quick() else 200)
+    parser.add_argument("--resume", action="store_true", help="keep the results so far")
     arguments = parser.parse_args()
     start, bench = time.perf_counter(), Bench()
     seeds = range(arguments.seed, arguments.seed + arguments.n)
-    results = [bench.one(seed) for seed in tqdm(seeds)]
+    results = [kept(bench, seed, arguments.resume) for seed in tqdm(seeds)]
     rows = rows_of(results)
     print_rows(rows)
     told = [
-        {"kind": item.table.kind, "seed": item.seed, "reason": item.reason,
+        {"kind": item.kind, "seed": item.seed, "reason": item.reason,
          "violation": round(item.violation, 4), "suggestion": item.suggestion,
          "objection": item.objection, "seconds": round(item.suggesting, 2)}
         for item in results

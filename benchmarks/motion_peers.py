@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from motion_node.timing.fastest import JointLimits
+from motion_node.timing.limits import JointLimits
 from scene_graph import Move
 
 PROCESS: Final = Path(__file__).parent / "motion_peer_process.py"

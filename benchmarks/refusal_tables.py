@@ -24,6 +24,7 @@ _STEP: Final = re.compile(
     r"(\d+) mm (to the left|to the right|nearer to the arm|away from the arm)"
 )
 _HEIGHT: Final = re.compile(r"(make|hang) obstacle (.*) (?:(\d+) mm (lower|higher)|as low as)")
+_TAKEN: Final = re.compile(r"take (?P<names>.*) off the stack at \S+")
 _WIDTH: Final = re.compile(r"make (\S+) (\d+) mm narrower")
 #: World x and y of a step.
 _STEPS: Final = {
@@ -125,6 +126,8 @@ def followed(table: Refused, suggestion: str) -> Refused:
     for sentence in suggestion.split(", and "):
         if match := _WIDTH.fullmatch(sentence):
             table = _narrower(table, match[1], int(match[2]) / 1000)
+        elif match := _TAKEN.fullmatch(sentence):
+            table = _without(table, set(match["names"].split(", ")))
         elif match := _HEIGHT.match(sentence):
             table = _height(table, match[2], match[4] or "", int(match[3] or 0) / 1000)
         elif match := _MOVED.fullmatch(sentence):
@@ -197,3 +200,11 @@ def _narrower(table: Refused, name: str, by: float) -> Refused:
     return replace(
         table, graph=replace(table.graph, objects=tuple(map(changed, table.graph.objects)))
     )
+
+
+def _without(table: Refused, names: set[str]) -> Refused:
+    graph = table.graph
+    assert names <= set(graph.names), names
+    objects = tuple(item for item in graph.objects if item.name not in names)
+    relations = frozenset(r for r in graph.relations if not names & {r.subject, r.object})
+    return replace(table, graph=replace(graph, objects=objects, relations=relations))

@@ -19,7 +19,7 @@ from motion_node.grasps import Grasp
 from motion_node.phases import HOME, PICK, PLACE, Phase, PhasePath, Switch, Tool
 from motion_node.planner import Motion
 from motion_node.robots.joints import JointValues
-from motion_node.timing.fastest import JointLimits
+from motion_node.timing.limits import JointLimits
 from motion_node.timing.time_paths import TimingSettings, time_paths
 from motion_node.timing.trajectory import Trajectory
 from scene_graph import Move, SceneGraph

@@ -12,7 +12,9 @@ from obstacle_scenes import WIDE, pen, wall
 from refusal_tables import Refused, followed
 
 from motion_node.certificate import Suggestions
-from motion_node.changes import Change, Table
+from motion_node.certificate.changes import Change
+from motion_node.certificate.levers import Table
+from motion_node.certificate.tower_lever import TowerLever
 from motion_node.errors import InfeasibleError
 from motion_node.obstacles import Obstacle
 from motion_node.planner import MotionPlanner
@@ -75,6 +77,33 @@ def test_a_block_out_of_reach_is_moved_without_its_place(planner: MotionPlanner)
 def test_a_block_too_wide_has_to_be_narrower_by_what_is_missing(planner: MotionPlanner) -> None:
     words, _ = suggested(planner, Refused("", scene((1, 0, 0), edge=0.08), ("width",)))
     assert words == "make red_box 11 mm narrower"
+
+
+def test_a_tower_too_high_loses_whole_blocks(planner: MotionPlanner) -> None:
+    graph = scene((1, 0, 12), places=WIDE, edge=0.065)
+    table = Refused("", graph, ("reach of the hand to", "lift"))
+    words, _ = suggested(planner, table)
+    top = graph.stacks()[2][::-1]
+    taken = words.removeprefix("take ").removesuffix(" off the stack at stack2").split(", ")
+    assert taken == list(top[: len(taken)])
+    # With one block less taken it cannot be.
+    if fewer := ", ".join(taken[:-1]):
+        less = followed(table, f"take {fewer} off the stack at stack2")
+        assert refusal(planner, less) is not None
+
+
+def test_a_stack_is_lowered_by_parts_of_blocks_and_by_whole_ones() -> None:
+    table = Table(scene((0, 0, 3), places=WIDE, edge=0.05))
+    names = table.graph.stacks()[2][::-1]
+    lever = TowerLever(2, names, (0.05,) * 3)
+    for amount, left in ((0.001, 3), (0.049, 3), (0.05, 2), (0.06, 2), (0.1, 1), (0.15, 0)):
+        graph = lever.pulled(table, amount).graph
+        assert graph.stacks()[2] == names[::-1][:left]
+        tops = [item.position_world[2] + item.size[2] / 2 for item in graph.objects]
+        assert max(tops, default=0.0) == pytest.approx(0.15 - amount)
+    assert [lever.rounded(a) for a in (0.001, 0.05, 0.051, 9.0)] == pytest.approx(
+        [0.05, 0.05, 0.1, 0.15]
+    )
 
 
 def test_a_fence_round_a_place(surrounded: MotionPlanner) -> None:

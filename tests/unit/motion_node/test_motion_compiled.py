@@ -8,13 +8,17 @@ import numpy as np
 import pytest
 
 from motion_node.nlp import compiled as module
-from motion_node.nlp.compiled import compiled
+from motion_node.nlp.compiled import loaded, machine_code, opened, written
 
 
 def some_function(factor: float = 2.0) -> ca.Function:
     x = ca.MX.sym("x", 40)
     values = factor * ca.sin(x)
     return ca.Function("some", [x], [values, ca.jacobian(ca.mtimes(values, x.T)[:, :8], x)])
+
+
+def compiled(function: ca.Function) -> ca.Function:
+    return loaded(function, machine_code(function))
 
 
 @pytest.fixture
@@ -42,13 +46,6 @@ def test_a_compiled_function_gives_the_same_and_is_kept_by_its_content(cache: Pa
     assert len(list(cache.iterdir())) == 2
 
 
-def test_small_functions_stay_as_they_are(cache: Path) -> None:
-    x = ca.MX.sym("x", 3)
-    function = ca.Function("small", [x], [2 * x])
-    assert compiled(function) is function
-    assert not cache.exists()
-
-
 @pytest.mark.parametrize("why", ["no compiler", "compiler fails", "no place", "broken library"])
 def test_what_cannot_be_compiled_is_interpreted(
     cache: Path, monkeypatch: pytest.MonkeyPatch, why: str
@@ -65,3 +62,22 @@ def test_what_cannot_be_compiled_is_interpreted(
         (library,) = cache.iterdir()
         library.write_text("not a library")
     assert compiled(function) is function
+
+
+def test_c_files_are_compiled_with_those_that_they_include(cache: Path, tmp_path: Path) -> None:
+    first, second = tmp_path / "first.c", tmp_path / "second.c"
+    first.write_text('#include "second.c"\nint more(int x) { return x + MORE; }\n')
+    second.write_text("#define MORE 5\n")
+    library = written(first, second)
+    assert library is not None
+    assert library.more(2) == 7
+    assert len(list(cache.iterdir())) == 1
+
+
+@pytest.mark.usefixtures("cache")
+def test_what_is_no_c_has_no_library(tmp_path: Path) -> None:
+    wrong = tmp_path / "wrong.c"
+    wrong.write_text("this is not C")
+    assert written(wrong) is None
+    assert opened(None) is None
+    assert opened(wrong) is None

@@ -49,6 +49,24 @@ def test_prismatic_joints_move_along_their_axis(urdf: str) -> None:
     np.testing.assert_allclose(by_numbers, opened)
 
 
+@pytest.mark.parametrize("reachable", [True, False])
+def test_inverse_kinematics_in_c_and_in_numpy_agree(
+    planner: MotionPlanner, monkeypatch: pytest.MonkeyPatch, reachable: bool
+) -> None:
+    inverse, rng, count = planner.inverse, np.random.default_rng(0), 40
+    assert inverse._steps is not None  # a compiler is there wherever the workspace can be built
+    far = 1.0 if reachable else 2.0
+    positions = rng.uniform((0.35, -0.25, 0.02), (0.55, 0.25, 0.3), (count, 3)) * (far, far, 1.0)
+    yaws, near = rng.uniform(-0.5, 0.5, count), planner.model.home
+    iterations = 25 if reachable else 8
+    mine = inverse.solve(positions, yaws, near, iterations)
+    monkeypatch.setattr(inverse, "_steps", None)
+    np.testing.assert_allclose(mine, inverse.solve(positions, yaws, near, iterations), atol=1e-4)
+    if reachable:
+        assert np.abs(inverse.residual(mine, positions)).max() < 1e-5
+    assert (mine >= planner.model.lower).all() and (mine <= planner.model.upper).all()
+
+
 def test_limits_are_those_of_the_description(urdf: str) -> None:
     kinematics = Kinematics(urdf, PANDA.arm_joints)
     assert kinematics.lower[0] == pytest.approx(-2.9671)

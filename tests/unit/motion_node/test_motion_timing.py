@@ -15,7 +15,10 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from scipy.optimize import linprog
 
-from motion_node.timing.fastest import SHORTEST, JointLimits, TimeGrid, fastest
+from motion_node.timing.fastest import TimeGrid, fastest
+from motion_node.timing.limits import JointLimits
+from motion_node.timing.reachability import SHORTEST, fastest_squares, squares_by_numpy
+from motion_node.timing.smoothing import smoothed, smoothed_by_numpy
 
 Array = NDArray[np.float64]
 
@@ -143,3 +146,35 @@ def _by_linear_programs(q: Array, limits: JointLimits, parts: int) -> float:
         squares.append(max(0.0, x + 2 * step * best[1]))
     speeds = np.sqrt(squares)
     return float((2 * step / (speeds[1:] + speeds[:-1])).sum())
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 7), st.booleans())
+def test_c_and_numpy_time_alike(seed: int, joints: int, still: bool) -> None:
+    q, limits = some_paths(seed, joints, 3), some_limits(seed, joints)
+    if still:
+        q[..., 0] = q[:1, :1, 0]
+    spline = CubicSpline(np.linspace(0.0, 1.0, q.shape[1]), q, axis=1, bc_type="clamped")
+    points = np.linspace(0.0, 1.0, 101)
+    positions, slopes, bends = (spline(points, order) for order in range(3))
+    both = (fastest_squares, squares_by_numpy)
+    found, other = (own(slopes, bends, limits, 0.01) for own in both)
+    np.testing.assert_allclose(found, other, rtol=1e-9)
+    slow = found.min(axis=0)[0] / 2
+    later, other = (own(slopes, bends, limits, 0.01, slow) for own in both)
+    np.testing.assert_allclose(later, other, rtol=1e-9)
+    for own in both:
+        with pytest.raises(ValueError, match="too fast to come to rest"):
+            own(slopes, bends, limits, 0.01, 1.1 * found.max())
+    speeds = np.sqrt(found)
+    times = np.cumsum(0.02 / (speeds[:, 1:] + speeds[:, :-1]), axis=1)
+    times = np.concatenate([np.zeros((3, 1)), times], axis=1)
+    velocities = slopes * speeds[:, :, None]
+    cases = [(0, 3, np.array([3, 90, 250])), (30, 1, np.array([120]))]  # one moves already
+    for begin, count, counts in cases:
+        ways = [values[:count, begin:] for values in (times, positions, velocities)]
+        ways[0] = ways[0] - ways[0][:, :1]
+        given_ = (*ways, velocities[0, begin], 0.015, counts, limits)
+        mine, its = (own(*given_) for own in (smoothed, smoothed_by_numpy))
+        for name, values in vars(mine).items():
+            np.testing.assert_allclose(values, vars(its)[name], rtol=1e-6, atol=1e-7, err_msg=name)

@@ -43,12 +43,12 @@ from .motion import Motion
 from .nlp import SOLVERS
 from .obstacles import Obstacle
 from .phases import HOME, PLACE, Phase, PhasePath
-from .refining import refined
+from .refining import FREE, refined
 from .robots import PANDA, Arm
 from .robots.inverse_kinematics import InverseKinematics
 from .robots.model import ArmModel
 from .settings import Settings
-from .timing.fastest import JointLimits
+from .timing.limits import JointLimits
 from .timing.time_paths import time_paths
 from .timing.trajectory import Trajectory
 
@@ -302,7 +302,7 @@ class MotionPlanner:
         if self.obstacles:
             paths, trajectory = refined(
                 *(paths, clear, solve_one, timed),
-                lambda sent: dense_check(self.model, sent, scene, self.obstacles, floor=floor),
+                lambda sent: dense_check(self.model, sent, scene, self.obstacles, FREE, floor),
                 frozenset(item.name for item in self.obstacles),
             )
         else:

@@ -13,6 +13,8 @@ from .errors import PATH, SCENE, InfeasibleError
 from .phases import Phase, PhasePath
 from .timing.trajectory import Trajectory
 
+#: A gap that is less is refined between the steps of a path, too [m].
+FREE: Final = 0.003
 #: So often ways are solved again.
 ROUNDS: Final = 6
 #: More room than what was missing, so that the next look finds none missing [m].

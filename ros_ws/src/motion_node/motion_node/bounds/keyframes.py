@@ -20,12 +20,16 @@ Array = NDArray[np.float64]
 
 
 class Keyframes:
-    """Solves P1 for each switch, then P2 from there."""
+    """Solves P1 for each switch, then P2 from there.
+
+    Attributes:
+        poses, among: P1 as it is solved without obstacles, and among them.
+    """
 
     def __init__(self, problems: SwitchProblems, inverse: InverseKinematics) -> None:
         self.problems = problems
         self.poses = Poses(problems, inverse)
-        self._among = PosesAmongObstacles(problems, inverse)
+        self.among = PosesAmongObstacles(problems, inverse)
 
     def solve(
         self, start: Array, phases: Sequence[Phase], clear: Clearances, sampled: bool = False
@@ -46,7 +50,7 @@ class Keyframes:
             return np.zeros((0, self.problems.model.dimension))
         demands = self.problems.demands(phases, clear)
         if sampled:
-            poses = self._among.solve_all(phases, clear)
+            poses = self.among.solve_all(phases, clear)
             solution = self.problems.solve(start, poses, demands, thorough=False)
             # No constraint reaches from switch to switch: the poses are a solution, too.
             return solution.x[1:-1] if solution.feasible else np.array(poses)
@@ -55,7 +59,7 @@ class Keyframes:
         except InfeasibleError as error:
             for phase in phases:
                 if (phase.move, phase.kind) == (error.move, error.phase):
-                    raise self._among.verdict(phase, clear) from error
+                    raise self.among.verdict(phase, clear) from error
             raise
         solution = self.problems.solve(start, poses, demands)
         if solution.feasible:

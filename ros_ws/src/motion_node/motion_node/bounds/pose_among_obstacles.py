@@ -49,6 +49,10 @@ class PosesAmongObstacles(Poses):
             found.append(q)
         return found
 
+    def possible(self, phase: Phase, demands: Sequence[Demand]) -> bool:
+        """Whether a pose is found for a phase with these demands."""
+        return self._try(self.guesses([phase], demands)[0], demands) is not None
+
     def verdict(self, phase: Phase, clear: Clearances) -> InfeasibleError:
         """Why, where P1 was found to have no solution for a phase."""
         demands = self._problems.demands([phase], clear)
@@ -100,7 +104,7 @@ class PosesAmongObstacles(Poses):
         error.excludes = SCENE
         alone = replace(phase, columns=_alone(phase, clear))
         demands = self._problems.demands([alone], clear)
-        if self._try(self.guesses([alone], demands)[0], demands) is None:
+        if not self.possible(alone, demands):
             error.excludes = fixed
         return error
 

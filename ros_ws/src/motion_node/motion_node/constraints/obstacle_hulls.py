@@ -3,7 +3,7 @@
 
 The hand is two boxes, the palm with the flange, and what hangs below it: fingers and a held block.
 The links behind it are spheres. An obstacle is an upright box, or a cylinder in it; of a cylinder
-the diagonals are axes too, so that it counts as the octagon around it.
+the diagonals are axes too, so that it counts as the octagon around it for the hand.
 
 An obstacle is (center x, y, z, half x, y, z, cos yaw, sin yaw, radius) [m], shape (9, 1): radius
 is half its diagonal from above, or a cylinder's.
@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 OBSTACLE_SIZE: Final = 9
 #: Of the smooth maximum over axes [1/m]: sharper than that of stacks, since places are narrow.
 SHARPNESS: Final = 500.0
+#: Within this of an edge distances are rounded, downwards [m].
+_ROUNDED: Final = 1e-3
 #: Far below everything: stands where there is none.
 _NOWHERE: Final = (0.0, 0.0, -9.0, 0.01, 0.01, 0.01, 1.0, 0.0, 0.02)
 
@@ -101,11 +103,19 @@ class HandPart:
 
 
 def sphere_gap(center: ca.SX, radius: float, obstacle: ObstacleHull) -> ca.SX:
-    """Of a sphere to an obstacle [m]."""
+    """Of a sphere to an obstacle [m]: past an edge the distance, not only that along an axis."""
     delta = center - obstacle.center
-    return _largest(
-        [smooth_abs(ca.dot(axis, delta)) - reach - radius for axis, reach in obstacle.axes]
-    )
+    beside = [
+        smooth_abs(ca.dot(axis, delta)) - obstacle.half[index]
+        for index, axis in enumerate((obstacle.first, obstacle.second))
+    ]
+    above = smooth_abs(delta[2]) - obstacle.half[2]
+    around = ca.sqrt(ca.sumsqr(delta[:2]) + _ROUNDED**2) - _ROUNDED - obstacle.radius
+    # The box is in the circle around it, or the cylinder in its box: the greater one is true.
+    level = ca.fmax(sum(ca.fmax(side, 0.0) ** 2 for side in beside), ca.fmax(around, 0.0) ** 2)
+    outside = ca.sqrt(level + ca.fmax(above, 0.0) ** 2 + _ROUNDED**2) - _ROUNDED
+    inside = ca.fmin(_largest([*beside, above, around]), 0.0)
+    return outside + inside - radius
 
 
 def _largest(gaps: Sequence[ca.SX]) -> ca.SX:

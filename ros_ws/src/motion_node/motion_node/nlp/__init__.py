@@ -12,12 +12,12 @@ from .problem import Attached, DifferenceCost, KOrderProblem, Solution
 from .program import TOLERANCE, Instance, Program
 from .rows import Demand, JoinedRows, Rows
 from .solver import Found, Solver, SolverFactory, chain
-from .sqp import Sqp
+from .sqp import make_sqp
 
 #: Name -> solver. Of the default, SQP is quick and only IPOPT's verdict counts as infeasible.
 SOLVERS: Final[dict[str, SolverFactory]] = {
-    "sqp_then_ipopt": chain(Sqp, Ipopt),
-    "sqp": Sqp,
+    "sqp_then_ipopt": chain(make_sqp, Ipopt),
+    "sqp": make_sqp,
     "ipopt": Ipopt,
 }
 DEFAULT_SOLVER: Final = "sqp_then_ipopt"

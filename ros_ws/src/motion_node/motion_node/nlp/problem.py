@@ -20,7 +20,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from .compiled import compiled
+from .compiled import loaded, machine_code
 from .elastic import Elastic, Slopes
 from .program import TOLERANCE, Instance, Program
 from .rows import Demand, Rows
@@ -174,12 +174,12 @@ class KOrderProblem:
                 ["triu_hess_gamma_x_x"],
             )
 
-        jacobian = compiled(
-            ca.Function(
-                "nlp_jac_g", [z, p], [g, ca.vertcat(*jacobians)], ["x", "p"], ["g", "jac_g_x"]
-            )
+        jacobian = ca.Function(
+            "nlp_jac_g", [z, p], [g, ca.vertcat(*jacobians)], ["x", "p"], ["g", "jac_g_x"]
         )
-        return Program(z, p, cost, g, self._hessian, jacobian, make_curvature)
+        library = machine_code(jacobian)
+        jacobian = loaded(jacobian, library)
+        return Program(z, p, cost, g, self._hessian, jacobian, library, make_curvature)
 
     def solve(
         self,

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 import casadi as ca
 import numpy as np
@@ -31,6 +32,7 @@ class Program:
         cost, g: expressions of z and p.
         hessian: H, constant and positive definite, shape (z, z).
         jacobian: (z, p) -> (g, dg/dz), sparse.
+        library: which has it as machine code; None where there is none.
         make_curvature: makes (z, p, factor, multipliers) -> upper triangle of the Hessian of
             factor * cost + multipliers . g.
     """
@@ -41,6 +43,7 @@ class Program:
     g: ca.MX
     hessian: Array
     jacobian: ca.Function
+    library: Path | None
     make_curvature: Callable[[], ca.Function]
 
     @cached_property

@@ -1,20 +1,104 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sequential quadratic programming with the costs' own Hessian, on the active-set method DAQP."""
+"""Sequential quadratic programming with the costs' own Hessian.
+
+In C (``sqp.c``, ``quadratic.c``) where constraints are machine code, and else in Python, on the
+active-set method DAQP: the same steps.
+"""
 
 from __future__ import annotations
 
+import ctypes
+from pathlib import Path
+from typing import Final
+
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from .buffered import Buffered
+from .compiled import opened, written
 from .program import TOLERANCE, Instance, Program
-from .solver import Found
+from .solver import Found, Solver
+
+Array = NDArray[np.float64]
 
 #: Largest step of a joint at which it has converged [rad].
 STEP_TOLERANCE = 2e-2
 #: Steps it may take, and how far a joint may move in the first of them [rad].
 MAX_STEPS = 20
 TRUST = 0.5
+
+_FILES: Final = tuple(Path(__file__).with_name(name) for name in ("sqp.c", "quadratic.c"))
+
+
+def make_sqp(program: Program) -> Solver:
+    """The quickest of both that there can be here."""
+    steps, constraints = written(*_FILES), opened(program.library)
+    if steps is None or constraints is None:
+        return Sqp(program)
+    return SqpInC(program, steps, constraints)
+
+
+class _Problem(ctypes.Structure):
+    """``Problem`` of ``sqp.c``."""
+
+    _fields_ = (
+        *((name, ctypes.c_int) for name in ("variables", "rows")),
+        *((name, ctypes.c_void_p) for name in ("inverse", "begin", "column", "place")),
+        ("constraints", ctypes.c_void_p),
+        *((name, ctypes.c_int) for name in ("arguments", "results", "integers", "reals")),
+        *((name, ctypes.c_int) for name in ("entries", "most")),
+        *((name, ctypes.c_double) for name in ("tolerance", "step_tolerance", "trust")),
+    )
+
+
+class SqpInC:
+    """See :class:`Sqp`. The lock of the interpreter is free meanwhile."""
+
+    def __init__(self, program: Program, steps: ctypes.CDLL, constraints: ctypes.CDLL) -> None:
+        self._inverse = np.linalg.inv(program.hessian)
+        self._variables, self._rows = len(self._inverse), program.g.numel()
+        # The Jacobian's entries come by columns; rows are needed.
+        slopes = program.jacobian.sparsity_out(1)
+        rows, columns = (np.array(own, dtype=np.intc) for own in slopes.get_triplet())
+        order = np.lexsort((columns, rows)).astype(np.intc)
+        begin = np.searchsorted(rows[order], np.arange(self._rows + 1)).astype(np.intc)
+        self._kept = (self._inverse, begin, columns[order], order, steps, constraints)
+        name = program.jacobian.name()
+        room = [ctypes.c_longlong() for _ in range(4)]
+        getattr(constraints, f"{name}_work")(*map(ctypes.byref, room))
+        self._problem = _Problem(
+            self._variables,
+            self._rows,
+            *(array.ctypes.data for array in self._kept[:4]),
+            ctypes.cast(getattr(constraints, name), ctypes.c_void_p).value,
+            *(int(size.value) for size in room),
+            len(order),
+            MAX_STEPS,
+            TOLERANCE,
+            STEP_TOLERANCE,
+            TRUST,
+        )
+        self._solve = steps.sqp
+        self._solve.argtypes = [ctypes.c_void_p] * 7
+        self._solve.restype = ctypes.c_int
+        self._address = ctypes.addressof(self._problem)
+
+    def solve(self, instance: Instance) -> Found:
+        """Where it converged, or where it gave up.
+
+        Raises:
+            MemoryError: if there is none left.
+        """
+        z, values = instance.start.copy(), np.empty(self._rows)
+        p, offset = instance.p, -self._inverse @ instance.linear
+        lower = np.concatenate([instance.lower_g, instance.lower_z])
+        upper = np.concatenate([instance.upper_g, instance.upper_z])
+        given = (p, offset, lower, upper, z, values)
+        steps = self._solve(self._address, *(array.ctypes.data for array in given))
+        if steps < 0:
+            raise MemoryError("no memory for sequential quadratic programming")
+        return Found(z, values, "sqp", steps)
 
 
 class Sqp:

@@ -2,17 +2,30 @@
 """Damped Gauss-Newton inverse kinematics for a hand that points down, for many poses at once.
 
 It only makes starting points; the bounds of :mod:`motion_node.bounds` decide what is feasible.
+In C (``inverse_kinematics.c``) where that can be compiled, and else in numpy.
 """
 
 from __future__ import annotations
+
+import ctypes
+from pathlib import Path
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..nlp.buffered import Buffered
+from ..nlp.compiled import loaded, machine_code, opened, written
 from .model import FREEDOMS_OF_A_POSE, HAND_ROWS, POSITION_ROWS, ArmModel
 
 Array = NDArray[np.float64]
+
+#: Rows this near are where they should be [m or rad].
+_THERE: Final = 1e-6
+_DAMPING: Final = 1e-5
+#: No joint moves farther in an iteration [rad].
+_LONGEST: Final = 0.5
+_FILE: Final = Path(__file__).with_suffix(".c")
 
 
 class InverseKinematics:
@@ -21,6 +34,9 @@ class InverseKinematics:
     def __init__(self, model: ArmModel) -> None:
         self._model = model
         self._maps: dict[int, Buffered] = {}
+        library = machine_code(model.hand)
+        self._function = loaded(model.hand, library)
+        self._hand, self._steps = opened(library), written(_FILE)
 
     def _hands(self, q: Array) -> tuple[Array, Array]:
         """Rows (k, HAND_ROWS) and Jacobians (k, HAND_ROWS, n) at configurations (k, n).
@@ -29,7 +45,7 @@ class InverseKinematics:
         """
         count = len(q)
         if count not in self._maps:
-            self._maps[count] = Buffered(self._model.hand.map(count))
+            self._maps[count] = Buffered(self._function.map(count))
         rows, jacobians = self._maps[count](q.ravel())
         by_column = jacobians.reshape(count, -1, HAND_ROWS)
         return rows.reshape(count, HAND_ROWS), by_column.transpose(0, 2, 1)
@@ -45,17 +61,41 @@ class InverseKinematics:
         """
         positions = np.atleast_2d(positions_world)
         model, count = self._model, len(positions)
-        q = np.array(np.broadcast_to(near, (count, model.dimension)), dtype=float)
+        q = np.array(np.broadcast_to(near, (count, model.dimension)), dtype=float, order="C")
         zeros = np.zeros(count)
         target = np.column_stack([positions, zeros, zeros, np.cos(yaws), np.sin(yaws)])
+        target = np.ascontiguousarray(target)
+        if self._hand is None or self._steps is None:
+            return self._by_numpy(q, target, iterations)
+        name, model = self._model.hand.name(), self._model
+        room = [ctypes.c_longlong() for _ in range(4)]
+        getattr(self._hand, f"{name}_work")(*map(ctypes.byref, room))
+        sizes = np.array([size.value for size in room], dtype=np.intc)
+        failed = self._steps.inverse(
+            getattr(self._hand, name),
+            ctypes.c_void_p(sizes.ctypes.data),
+            *map(ctypes.c_int, (*q.shape, HAND_ROWS)),
+            *(ctypes.c_void_p(a.ctypes.data) for a in (target, model.lower, model.upper)),
+            ctypes.c_int(iterations),
+            *map(ctypes.c_double, (_THERE, _DAMPING, _LONGEST)),
+            ctypes.c_void_p(q.ctypes.data),
+        )
+        if failed:
+            raise MemoryError("no memory for inverse kinematics")
+        return q
+
+    def _by_numpy(self, q: Array, target: Array, iterations: int) -> Array:
+        """All configurations (k, n) at once, towards rows (k, HAND_ROWS)."""
+        model = self._model
         for _ in range(iterations):
             rows, jacobian = self._hands(q)
             residual = rows - target
-            if np.abs(residual).max() < 1e-6:
+            if np.abs(residual).max() < _THERE:
                 break
-            gram = jacobian @ jacobian.transpose(0, 2, 1) + 1e-5 * np.eye(HAND_ROWS)
+            gram = jacobian @ jacobian.transpose(0, 2, 1) + _DAMPING * np.eye(HAND_ROWS)
             step = jacobian.transpose(0, 2, 1) @ np.linalg.solve(gram, residual[:, :, None])
-            q = np.clip(q - np.clip(step[:, :, 0], -0.5, 0.5), model.lower, model.upper)
+            step = np.clip(step[:, :, 0], -_LONGEST, _LONGEST)
+            q = np.clip(q - step, model.lower, model.upper)
         return q
 
     def moved(self, q: Array, positions_world: Array) -> Array:

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from ..phases import HOME, PICK, PLACE, Phase, PhasePath
 from ..robots.joints import JointValues
-from .fastest import JointLimits, TimeGrid, Way, fastest, fastest_from
+from .fastest import TimeGrid, Way, fastest, fastest_from
+from .limits import JointLimits
 from .trajectory import Interval, Trajectory
 
 Array = NDArray[np.float64]

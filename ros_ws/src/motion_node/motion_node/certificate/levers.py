@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a person can change about a table, by how much, and in which words that is told.
 
-A lever is one such thing along one axis: a stack or a place moved, an obstacle moved, lower or
-higher, a block narrower. Left is as in the pictures, where places are numbered from the left;
-nearer to the arm is along world x.
+A lever is one such thing along one axis: a stack or a place moved, blocks taken off a stack, an
+obstacle moved, lower or higher, a block narrower. Left is as in the pictures, where places are
+numbered from the left; nearer to the arm is along world x.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 
 from scene_graph import Place, SceneGraph, SceneObject, base_name
 
-from .obstacles import Obstacle
+from ..obstacles import Obstacle
 
 #: Along world x and y.
 X: Final = 0
@@ -25,8 +25,8 @@ Y: Final = 1
 FARTHEST: Final = 0.4
 #: An obstacle of which so little is left is taken away [m].
 _NOTHING_LEFT: Final = 0.005
-#: What is less is not worth telling [m].
-_TOO_LITTLE: Final = 5e-4
+#: As good as nothing [m].
+ROUNDING: Final = 1e-6
 
 
 @dataclass(frozen=True)
@@ -58,9 +58,20 @@ class Lever(Protocol):
     def pulled(self, table: Table, amount: float) -> Table:
         """The table after a change by ``amount`` [m]."""
 
+    def rounded(self, amount: float) -> float:
+        """At least as much, as a person can do it [m]."""
+
+
+class _ByMillimetres:
+    """What can be done by whole millimetres."""
+
+    def rounded(self, amount: float) -> float:
+        """See :class:`Lever`."""
+        return float(np.sign(amount) * np.ceil(1000 * (abs(amount) - ROUNDING)) / 1000)
+
 
 @dataclass(frozen=True)
-class StackLever:
+class StackLever(_ByMillimetres):
     """A stack moved along an axis.
 
     Attributes:
@@ -116,7 +127,7 @@ class StackLever:
 
 
 @dataclass(frozen=True)
-class ObstacleLever:
+class ObstacleLever(_ByMillimetres):
     """An obstacle (all of its parts) moved along an axis."""
 
     name: str
@@ -148,7 +159,7 @@ class ObstacleLever:
 
 
 @dataclass(frozen=True)
-class HeightLever:
+class HeightLever(_ByMillimetres):
     """An obstacle that stands made lower from above, or one that hangs made to hang higher.
 
     Attributes:
@@ -193,7 +204,7 @@ class HeightLever:
 
 
 @dataclass(frozen=True)
-class WidthLever:
+class WidthLever(_ByMillimetres):
     """A block made narrower along one of its own axes."""
 
     name: str
@@ -223,59 +234,6 @@ class WidthLever:
         narrower = replace(item, size=(x, y, z))
         objects = tuple(narrower if o.name == self.name else o for o in table.graph.objects)
         return replace(table, graph=replace(table.graph, objects=objects))
-
-
-@dataclass(frozen=True)
-class Change:
-    """Levers pulled together, each by an amount [m]."""
-
-    levers: tuple[Lever, ...]
-    amounts: tuple[float, ...]
-
-    @property
-    def size(self) -> float:
-        """Sum of the amounts [m]."""
-        return float(np.abs(self.amounts).sum())
-
-    def beside(self, other: Change) -> float:
-        """How far it is from another change of the same levers [m]."""
-        return float(np.abs(np.subtract(self.amounts, other.amounts)).sum())
-
-    def made(self, table: Table) -> Table:
-        """The table after it."""
-        for lever, amount in zip(self.levers, self.amounts):
-            if amount:
-                table = lever.pulled(table, amount)
-        return table
-
-    def grown(self, by: float) -> Change | None:
-        """By so much more [m]; None where nothing can go farther."""
-        amounts = _within(self.levers, [a + float(np.sign(a)) * by for a in self.amounts])
-        return None if amounts == self.amounts else replace(self, amounts=amounts)
-
-    def words(self, table: Table) -> str:
-        """Such as "move green_box 32 mm to the left and 4 mm nearer to the arm"."""
-        parts: dict[str, list[str]] = {}
-        for lever, amount in zip(self.levers, self.amounts):
-            if amount:
-                parts.setdefault(lever.thing, []).append(lever.by(amount, table))
-        return ", and ".join(f"{thing} {' and '.join(by)}" for thing, by in parts.items())
-
-
-def in_whole_millimetres(levers: Sequence[Lever], amounts: Sequence[float]) -> Change | None:
-    """The change, rounded away from zero; None if nothing is left of it."""
-    rounded = [
-        float(np.sign(amount) * np.ceil(abs(amount) * 1000 + 0.5) / 1000)
-        if abs(amount) > _TOO_LITTLE
-        else 0.0
-        for amount in amounts
-    ]
-    return Change(tuple(levers), _within(levers, rounded)) if any(rounded) else None
-
-
-def _within(levers: Sequence[Lever], amounts: Sequence[float]) -> tuple[float, ...]:
-    """Amounts, none farther than a lever goes."""
-    return tuple(float(np.clip(amount, *lever.reach)) for lever, amount in zip(levers, amounts))
 
 
 def height_lever(obstacles: Sequence[Obstacle], name: str, floor: float) -> HeightLever:
