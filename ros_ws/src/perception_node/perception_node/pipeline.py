@@ -165,7 +165,7 @@ class Perception:
         """The blocks measured; of two rows without those that are mostly covered."""
         if isinstance(places, TwoRows) and observation.depth is not None:
             return measure_seen(observation, segments, places.places)
-        return Seen(segments, measure(observation, segments))
+        return Seen(segments, measure(observation, segments, places.places))
 
     def _aligned(self, observation: Observation) -> Observation:
         """With edges where they are, where the places are seen and depth can be moved to colour."""
@@ -176,7 +176,8 @@ class Perception:
 
     def _segments(self, observation: Observation) -> Segments:
         segmenter = self.segmenter or SEGMENTERS[self.config.mask_source]
-        if observation.depth is None and self.segmenter is None:
+        drawn = observation.depth is None and observation.labels is not None
+        if drawn and self.segmenter is None:
             segmenter = given_labels  # a goal image, drawn by hand
         segments = segmenter(observation, self._volume)
         if segments.label_image.shape != observation.rgb.shape[:2]:

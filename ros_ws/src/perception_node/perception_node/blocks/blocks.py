@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,11 +13,12 @@ from perception_node.noise import depth_noise
 from perception_node.observation import Observation
 from perception_node.places import Standing
 from perception_node.segment import Segments
-from scene_graph import BlockPose
+from scene_graph import BlockPose, Place
 
 from .measure import BlockSurface, measure_blocks
 from .outline import shape_from_outline
 from .pose import MeasuredBlock, pose_blocks
+from .silhouette import measure_silhouettes
 
 
 @dataclass(frozen=True)
@@ -40,15 +41,28 @@ class Blocks:
         return (None,) * len(self.shapes)
 
 
-def measure(observation: Observation, segments: Segments) -> tuple[BlockSurface, ...]:
-    """Each block by itself, in the order of the segments; nothing without depth or camera.
+def measure(
+    observation: Observation, segments: Segments, places: Sequence[Place] = ()
+) -> tuple[BlockSurface, ...]:
+    """Each block by its depth, or all by their outlines where these were found in colour alone.
+
+    Args:
+        places: on which they stand.
+
+    Returns:
+        In the order of the segments; nothing without camera, or of masks that came without depth.
 
     Raises:
-        BadImageError: if too little depth of a block is known.
+        BadImageError: if too little depth of a block is known, or one stands on no place.
     """
     depth, camera = observation.depth, observation.camera
-    if depth is None or camera is None:
+    if camera is None:
         return ()
+    if depth is None:
+        if segments.hides is None or not places:
+            return ()
+        feet = np.array([place.position_world for place in places])
+        return measure_silhouettes(observation.rgb, segments, camera, feet)
     return measure_blocks(
         segments, depth, camera, depth_noise(depth), observation.sure, observation.edge_doubt
     )

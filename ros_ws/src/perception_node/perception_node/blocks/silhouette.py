@@ -1,0 +1,395 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Poses and sizes of blocks from their outlines alone, where no depth is known.
+
+What a picture of one camera leaves open is told by what is known of the scene: the lowest block of
+a tower stands on the table, each other one on the one below it, upright, and about on a place. The
+outline of a convex body is given by how far it reaches in every direction of the picture,
+
+    s(n) = max over its corners c of n · project(c),
+
+so all blocks of a picture are fitted at once, by Gauss-Newton, to how far their masks reach. Where
+something else covers an edge, the block reaches at least as far.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from perception_node.camera import PinholeCamera
+from perception_node.errors import BadImageError
+from perception_node.segment import Segments
+from scene_graph import BOX, CYLINDER, SPHERE
+
+from .measure import BlockSurface
+from .outline import shape_from_outline
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+#: So many directions are looked at.
+DIRECTIONS: Final = 32
+#: Standard deviation of where an outline is, at the block [m], and so many times as much for what
+#: neighbouring directions have in common.
+OUTLINE: Final = 0.001
+COMMON: Final = 1.7
+#: What is known beforehand, as standard deviations: where a block stands on its place or on the one
+#: below it, its yaw, its widths and how much they and its height differ [m, rad].
+ON_PLACE: Final = 0.012
+ON_BLOCK: Final = 0.008
+YAW: Final = 0.5
+WIDTH: Final = 0.03
+SQUARE: Final = 0.005
+CUBE: Final = 0.02
+#: How equal the edges of cubes are, and outlines that all differ by no more than this from those of
+#: cubes, as a root mean square, are theirs [m].
+EQUAL: Final = 0.0005
+CUBES_FIT: Final = 0.0012
+#: A block stands no further than this beside the upright line over a place [m].
+BESIDE: Final = 0.075
+#: Yaws at which the fit begins [rad].
+YAWS: Final = np.radians(np.arange(-45.0, 45.0, 7.5))
+STEPS: Final = 7
+#: An outline that differs by more than this as a root mean square is of no upright block [m].
+MISFIT: Final = 0.0035
+#: So far outside of an outline it is looked for what covers it [m].
+OUTSIDE: Final = 0.004
+#: Sizes that blocks can have [m].
+SMALLEST: Final = 0.012
+LARGEST: Final = 0.14
+
+_X, _Y, _YAW, _WIDE, _DEEP, _HIGH, _LOW = range(7)
+#: By so much parameters are changed to see what that does [m, rad].
+_CHANGE: Final = np.array([1e-4, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4, 1e-4])
+
+
+def _unit(shape: str) -> Array:
+    """Corners of a body of unit size about its middle, shape (n, 3)."""
+    turns = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
+    if shape == BOX:
+        return np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    if shape == CYLINDER:
+        ring = 0.5 * np.stack([np.cos(turns), np.sin(turns)], -1)
+        return np.concatenate([np.column_stack([ring, np.full(16, z)]) for z in (-0.5, 0.5)])
+    heights = np.linspace(-0.5, 0.5, 9)
+    return np.concatenate(
+        [
+            np.column_stack(
+                [
+                    np.sqrt(0.25 - z**2) * np.cos(turns),
+                    np.sqrt(0.25 - z**2) * np.sin(turns),
+                    np.full(16, z),
+                ]
+            )
+            for z in heights
+        ]
+    )
+
+
+_UNITS: Final = {shape: _unit(shape) for shape in (BOX, CYLINDER, SPHERE)}
+
+
+@dataclass(frozen=True)
+class Reach:
+    """How far the masks of N blocks reach, in K directions.
+
+    Attributes:
+        directions: shape (K, 2).
+        far: shape (N, K) [px].
+        covered: where something else covers the edge, shape (N, K).
+        scale: pixels for a metre at each block, shape (N,).
+    """
+
+    directions: Array
+    far: Array
+    covered: Mask
+    scale: Array
+
+
+def measure_silhouettes(
+    rgb: NDArray[np.uint8], segments: Segments, camera: PinholeCamera, feet: Array
+) -> tuple[BlockSurface, ...]:
+    """What outlines say about each block, in the order of the segments.
+
+    Args:
+        rgb: shape (height, width, 3).
+        feet: of the places, at least one, shape (m, 3) [m].
+
+    Raises:
+        BadImageError: if a block is not over a place; the sentence names its label.
+    """
+    outlines = [_points(segment.part, segment.outline) for segment in segments]
+    towers = _towers(segments, outlines, camera, feet)
+    reach = _reach(segments, outlines, towers, camera, feet)
+    shapes = [shape_from_outline(rgb, segment.part) for segment in segments]
+    return _Fit(towers, shapes, reach, camera, feet).surfaces()
+
+
+def _points(part: Mask, outline: Array | None) -> Array:
+    """Points around a mask, of its pixels' corners where no finer ones are known, (n, 2) [px]."""
+    if outline is not None:
+        return outline
+    rows, columns = np.nonzero(part)
+    around = np.array([[-0.35, -0.35], [-0.35, 0.35], [0.35, -0.35], [0.35, 0.35]])
+    return (np.stack([columns, rows], -1)[:, None] + around).reshape(-1, 2)
+
+
+def _towers(
+    segments: Segments, outlines: Sequence[Array], camera: PinholeCamera, feet: Array
+) -> list[list[int]]:
+    """For each place the blocks over it, from the bottom: as upright lines are seen in a picture.
+
+    Raises:
+        BadImageError: if a block is over none.
+    """
+    up = np.array([0.0, 0.0, 0.3])
+    low, high = camera.project(feet), camera.project(feet + up)
+    scale = _scales(camera, feet)
+    towers: list[list[tuple[float, int]]] = [[] for _ in feet]
+    for index, points in enumerate(outlines):
+        middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+        along = (middle[1] - low[:, 1]) / (high[:, 1] - low[:, 1])
+        off = np.abs(middle[0] - (low + along[:, None] * (high - low))[:, 0]) / scale
+        place = int(off.argmin())
+        if off[place] > BESIDE:
+            raise BadImageError(
+                f"what is seen at pixel ({middle[0]:.0f}, {middle[1]:.0f}) stands on no place: it "
+                f"is {1000 * off[place]:.0f} mm beside the nearest; put every block on a place, or "
+                "check the parameter stack_positions and camera/extrinsics"
+            )
+        towers[place].append((-float(middle[1]), index))
+    return [[index for _, index in sorted(tower)] for tower in towers]
+
+
+def _scales(camera: PinholeCamera, points: Array) -> Array:
+    """Pixels for a metre across, at points, shape (n,)."""
+    forward = camera.world_from_optical[:3, 2]
+    depth = (points - camera.position_world) @ forward
+    return np.asarray(camera.intrinsics[0, 0] / np.maximum(depth, 1e-3))
+
+
+def _reach(
+    segments: Segments,
+    outlines: Sequence[Array],
+    towers: Sequence[Sequence[int]],
+    camera: PinholeCamera,
+    feet: Array,
+) -> Reach:
+    angles = np.linspace(0.0, 2.0 * np.pi, DIRECTIONS, endpoint=False)
+    directions = np.stack([np.cos(angles), np.sin(angles)], -1)
+    count = len(outlines)
+    place, level = np.zeros(count, int), np.zeros(count, int)
+    for number, tower in enumerate(towers):
+        place[tower], level[tower] = number, range(len(tower))
+    scale = _scales(camera, feet)[place]
+    near = -_scales(camera, feet)[place]
+    far, covered = np.zeros((count, DIRECTIONS)), np.zeros((count, DIRECTIONS), bool)
+    height, width = segments.label_image.shape
+    numbers = np.full(int(segments.label_image.max(initial=0)) + 1, -1)
+    numbers[[segment.label for segment in segments]] = range(count)
+    hides = segments.hides
+    for index, points in enumerate(outlines):
+        along = points @ directions.T
+        farthest = along.argmax(axis=0)
+        far[index] = along[farthest, range(DIRECTIONS)]
+        beyond = points[farthest] + directions * max(1.5, OUTSIDE * scale[index])
+        columns, rows = np.round(beyond).astype(int).T
+        columns, rows = np.clip(columns, 0, width - 1), np.clip(rows, 0, height - 1)
+        other = numbers[segments.label_image[rows, columns]]
+        # Of a tower the upper one is before the lower, seen from above; of two the nearer one is.
+        same = place[other] == place[index]
+        before = np.where(same, level[other] > level[index], near[other] < near[index])
+        covered[index] = (other >= 0) & (other != index) & before
+        if hides is not None:
+            covered[index] |= hides[rows, columns]
+    return Reach(directions, far, covered, scale)
+
+
+class _Fit:
+    """All blocks of a picture, fitted at once."""
+
+    def __init__(
+        self,
+        towers: Sequence[Sequence[int]],
+        shapes: Sequence[str],
+        reach: Reach,
+        camera: PinholeCamera,
+        feet: Array,
+    ) -> None:
+        self.towers, self.shapes, self.reach = towers, shapes, reach
+        self.camera, self.feet = camera, feet
+        self.count = len(shapes)
+        most = max(len(_UNITS[shape]) for shape in shapes)
+        # Bodies with fewer corners have their last one several times.
+        self.units = np.stack(
+            [np.pad(u, ((0, most - len(u)), (0, 0)), mode="edge") for u in map(_UNITS.get, shapes)]
+        )
+        self.below = np.full(self.count, -1)
+        self.foot = np.zeros((self.count, 3))
+        for foot, tower in zip(feet, towers):
+            self.foot[tower] = foot
+            self.below[tower[1:]] = tower[:-1]
+        self.order = [index for tower in towers for index in tower]
+        # z of a block's lower end is the sum of the heights below it.
+        self.under = np.zeros((self.count, self.count))
+        for tower in towers:
+            for level, index in enumerate(tower):
+                self.under[index, list(tower[:level])] = 1.0
+
+    def surfaces(self) -> tuple[BlockSurface, ...]:
+        """What was found, in the order of the segments."""
+        start = self._start()
+        values, covariance, misfit = self._fitted(start, EQUAL, EQUAL)
+        if misfit.max() > CUBES_FIT:
+            values, covariance, misfit = self._fitted(start, SQUARE, CUBE)
+        return tuple(
+            self._surface(index, values, covariance, float(misfit[index]))
+            for index in range(self.count)
+        )
+
+    def _fitted(self, values: Array, square: float, cube: float) -> tuple[Array, Array, Array]:
+        """Parameters, their covariance, and by how much outlines differ [m].
+
+        Args:
+            values: where the fit begins.
+            square, cube: by how much the widths, and the height and a width, of a box differ.
+        """
+        for _ in range(STEPS):
+            off, matrix, weights = self._linear(values, square, cube)
+            normal = matrix.T @ (weights[:, None] * matrix)
+            step = np.linalg.solve(normal, -matrix.T @ (weights * off)).reshape(self.count, 6)
+            limit = np.array([0.02, 0.02, 0.25, 0.02, 0.02, 0.02])
+            values = values + np.clip(step, -limit, limit)
+            values[:, _WIDE:_LOW] = np.clip(values[:, _WIDE:_LOW], SMALLEST, LARGEST)
+        off, matrix, weights = self._linear(values, square, cube)
+        covariance = np.linalg.inv(matrix.T @ (weights[:, None] * matrix))
+        misfit = np.sqrt(np.mean(self._off(values) ** 2, axis=1)) / self.reach.scale
+        return values, covariance, misfit
+
+    def _start(self) -> Array:
+        """x, y, yaw, widths and height of each block, shape (N, 6)."""
+        values = np.zeros((self.count, 6))
+        values[:, :2] = self.foot[:, :2]
+        # Directions 0 and half of them are right and left, those between down and up.
+        far, quarter = self.reach.far, DIRECTIONS // 4
+        across = (far[:, 0] + far[:, 2 * quarter]) / self.reach.scale
+        values[:, _WIDE] = values[:, _DEEP] = values[:, _HIGH] = np.clip(
+            across / 1.15, SMALLEST, LARGEST
+        )
+        costs = []
+        for yaw in YAWS:
+            turned = values.copy()
+            turned[:, _YAW] = yaw
+            width = across / (abs(np.cos(yaw)) + abs(np.sin(yaw)))
+            turned[:, _WIDE:_LOW] = np.clip(width, SMALLEST, LARGEST)[:, None]
+            # In the picture the outline is where it is: only its form tells the yaw.
+            off = self._off(turned)
+            form = off - off @ self.reach.directions @ self.reach.directions.T * (2.0 / DIRECTIONS)
+            costs.append((form**2).sum(axis=1))
+        best = np.array(costs).argmin(axis=0)
+        values[:, _YAW] = YAWS[best]
+        width = across / (np.abs(np.cos(values[:, _YAW])) + np.abs(np.sin(values[:, _YAW])))
+        values[:, _WIDE:_LOW] = np.clip(width, SMALLEST, LARGEST)[:, None]
+        round_ones = [index for index, shape in enumerate(self.shapes) if shape != BOX]
+        values[round_ones, _YAW] = 0.0
+        return values
+
+    def _with_low(self, values: Array) -> Array:
+        """The parameters and z of the lower end, shape (N, 7)."""
+        low = self.foot[:, 2] + self.under @ values[:, _HIGH]
+        return np.column_stack([values, low])
+
+    def _seen(self, values: Array) -> Array:
+        """How far blocks reach in each direction, (..., N, 7) -> (..., N, K) [px]."""
+        c, s = np.cos(values[..., _YAW]), np.sin(values[..., _YAW])
+        size = values[..., None, _WIDE:_LOW]
+        own = self.units * size
+        x = c[..., None] * own[..., 0] - s[..., None] * own[..., 1] + values[..., _X, None]
+        y = s[..., None] * own[..., 0] + c[..., None] * own[..., 1] + values[..., _Y, None]
+        z = own[..., 2] + (values[..., _LOW] + 0.5 * values[..., _HIGH])[..., None]
+        pixels = self.camera.project(np.stack([x, y, z], -1))
+        return np.asarray((pixels @ self.reach.directions.T).max(axis=-2))
+
+    def _off(self, values: Array) -> Array:
+        """By how much they reach too far, shape (N, K) [px]."""
+        off = self._seen(self._with_low(values)) - self.reach.far
+        return np.where(self.reach.covered, np.minimum(off, 0.0), off)
+
+    def _linear(
+        self, values: Array, square: float, cube: float
+    ) -> tuple[Array, Array, Array]:
+        """Residuals, their derivatives by all 6N parameters, and their weights."""
+        full = self._with_low(values)
+        changed = full + np.eye(7)[:, None, :] * _CHANGE
+        seen = self._seen(np.concatenate([full[None], changed]))
+        off = seen[0] - self.reach.far
+        active = ~self.reach.covered | (off < 0.0)
+        slopes = (seen[1:] - seen[0]) / _CHANGE[:, None, None]  # (7, N, K)
+        count, k = off.shape
+        matrix = np.zeros((count, k, count, 6))
+        own = np.arange(count)
+        matrix[own, :, own, :] = slopes[:6].transpose(1, 2, 0)
+        matrix[..., _HIGH] += slopes[_LOW][:, :, None] * self.under[:, None, :]
+        doubt = COMMON * OUTLINE * self.reach.scale[:, None]
+        weights = active / doubt**2
+        known, derivative, sure = self._known(values, square, cube)
+        return (
+            np.concatenate([(off * active).ravel(), known]),
+            np.concatenate([matrix.reshape(count * k, 6 * count), derivative]),
+            np.concatenate([weights.ravel(), sure]),
+        )
+
+    def _known(
+        self, values: Array, square: float, cube: float
+    ) -> tuple[Array, Array, Array]:
+        """What is known beforehand, as further residuals."""
+        rows, off, sure = [], [], []
+
+        def add(value: float, doubt: float, *terms: tuple[int, int, float]) -> None:
+            row = np.zeros((self.count, 6))
+            for index, column, factor in terms:
+                row[index, column] += factor
+            rows.append(row.ravel())
+            off.append(value)
+            sure.append(doubt**-2)
+
+        for index in range(self.count):
+            item, below = values[index], int(self.below[index])
+            is_box = self.shapes[index] == BOX
+            for axis in (_X, _Y):
+                add(item[axis] - self.foot[index, axis], ON_PLACE, (index, axis, 1.0))
+                if below >= 0:
+                    off_below = item[axis] - values[below, axis]
+                    add(off_below, ON_BLOCK, (index, axis, 1.0), (below, axis, -1.0))
+            add(0.0, YAW if is_box else 1e-3, (index, _YAW, 1.0))
+            wide, deep, high = item[_WIDE:_LOW]
+            add(wide - deep, square if is_box else 1e-4, (index, _WIDE, 1.0), (index, _DEEP, -1.0))
+            high_as_wide = 1e-4 if self.shapes[index] == SPHERE else cube if is_box else CUBE
+            add(high - wide, high_as_wide, (index, _HIGH, 1.0), (index, _WIDE, -1.0))
+            add(wide - 0.045, WIDTH, (index, _WIDE, 1.0))
+        return np.array(off), np.array(rows), np.array(sure)
+
+    def _surface(
+        self, index: int, values: Array, covariance: Array, misfit: float
+    ) -> BlockSurface:
+        x, y, yaw, wide, deep, high = (float(value) for value in values[index])
+        to_block = np.zeros((7, self.count, 6))
+        to_block[[0, 1, 2, 3, 4], index, [_X, _Y, _YAW, _WIDE, _DEEP]] = 1.0
+        to_block[5, :, _HIGH] = self.under[index]
+        to_block[6, :, _HIGH] = self.under[index]
+        to_block[6, index, _HIGH] = 1.0
+        flat = to_block.reshape(7, -1)
+        low = float(self.foot[index, 2] + self.under[index] @ values[:, _HIGH])
+        turn = round(yaw / (np.pi / 2)) if self.shapes[index] == BOX else 0
+        if turn % 2:
+            flat = flat[[0, 1, 2, 4, 3, 5, 6]]
+            wide, deep = deep, wide
+        doubt = flat @ covariance @ flat.T + 1e-9 * np.eye(7)
+        return BlockSurface(
+            self.shapes[index], (x, y), yaw - turn * np.pi / 2, (wide, deep), low, low + high,
+            doubt, upright=misfit < MISFIT, seen_low=low,
+        )  # fmt: skip
