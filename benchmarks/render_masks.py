@@ -34,7 +34,7 @@ def main() -> int:
     """Exit code 0 when done, 130 when stopped by Ctrl-C."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("data/masks"), help="folder to write")
-    parser.add_argument("--shards", type=int, default=15, help="of 160 pictures each")
+    parser.add_argument("--shards", type=int, default=16, help="of 160 pictures each")
     parser.add_argument("--first", type=int, default=0, help="number of the first shard")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
@@ -48,7 +48,9 @@ def main() -> int:
             for scene in range(SCENES * number, SCENES * (number + 1)):
                 pictures += _pictures(draw_scene(scene, STATES))
             part = path.with_suffix(".part.npz")
-            columns = {key: np.stack([item[key] for item in pictures]) for key in pictures[0]}
+            columns: dict[str, Any] = {
+                key: np.stack([item[key] for item in pictures]) for key in pictures[0]
+            }
             np.savez_compressed(part, **columns)
             part.rename(path)
     except KeyboardInterrupt:

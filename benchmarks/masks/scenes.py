@@ -57,7 +57,8 @@ def _draw(seed: int, rng: np.random.Generator, states: int) -> TrainingScene:
     usual = rng.random() < 0.3
     places = tuple(place[:2] for place in ROW_OF_THREE) if usual else draw_row(Row(), rng)
     named = _usual_blocks(rng) if usual else _blocks(rng)
-    highest = max(HIGHEST if usual else 0.0, min(HIGHEST, sum(b["size"][2] for b in named.values())))
+    together = sum(block["size"][2] for block in named.values())
+    highest = HIGHEST if usual else min(HIGHEST, together)
     view = Viewpoint(
         elevation=float(rng.uniform(0.15, 0.55)),
         vertical_fov=float(rng.uniform(0.42, 0.9)),

@@ -59,9 +59,9 @@ PARAMETERS: Final = (
     ParameterSpec(
         "mask_source",
         _DEFAULT.mask_source,
-        "where the blocks' pixels come from: rgbd (found in colour and depth), rgb (found in colour "
-        "alone, no depth is heard) or segmentation_topic (camera/segmentation, of a detector of "
-        "your own)",
+        "where the blocks' pixels come from: rgbd (found in colour and depth), rgb (found in "
+        "colour alone, no depth is heard) or segmentation_topic (camera/segmentation, of a "
+        "detector of your own)",
         read_only=True,
         check=_mask_source_problem,
     ),
@@ -173,7 +173,7 @@ PARAMETERS: Final = (
         "max_doubt",
         _DEFAULT.limits.doubt,
         "standard deviation with which a block's centre may be known in a graph that may be "
-        "planned on [m]",
+        "planned on; three times as much where it follows from colour alone [m]",
         minimum=0.0005,
         maximum=0.1,
     ),

@@ -125,7 +125,8 @@ class Perception:
         fallen = find_fallen(observation.rgb, seen.segments, seen.surfaces, coordinates)
         if fallen:
             occlusion = find_occlusion(observation, segments, places, config)
-            verdict = judge_fallen(fallen[0], occlusion, config)
+            by_depth = observation.depth is not None
+            verdict = judge_fallen(fallen[0], occlusion, config, by_depth)
             if len(fallen) == len(seen.segments):
                 return refused(verdict)
             # What is known of the others is told all the same; what has fallen may hide some.
@@ -165,6 +166,10 @@ class Perception:
         """The blocks measured; of two rows without those that are mostly covered."""
         if isinstance(places, TwoRows) and observation.depth is not None:
             return measure_seen(observation, segments, places.places)
+        if isinstance(places, TwoRows) and segments.hides is not None:
+            raise BadImageError(
+                "the places lie in two rows, which only depth tells apart; set mask_source to rgbd"
+            )
         return Seen(segments, measure(observation, segments, places.places))
 
     def _aligned(self, observation: Observation) -> Observation:

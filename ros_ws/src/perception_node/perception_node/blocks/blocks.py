@@ -27,11 +27,13 @@ class Blocks:
 
     Attributes:
         shapes: ``box``, ``cylinder`` or ``sphere`` for each.
-        measured: all of them, or none where depth or camera are missing.
+        measured: all of them, or none where camera, or depth of masks that were given, are missing.
+        by_outline: whether they were measured by their outlines, not by depth.
     """
 
     shapes: tuple[str, ...]
     measured: tuple[MeasuredBlock, ...] = ()
+    by_outline: bool = False
 
     @property
     def poses(self) -> tuple[BlockPose | None, ...]:
@@ -92,4 +94,5 @@ def find_blocks(
         shapes = tuple(shape_from_outline(observation.rgb, segment.part) for segment in segments)
         return Blocks(shapes)
     measured = pose_blocks(surfaces, standing.stacks, standing.table_heights, covered, smallest)
-    return Blocks(tuple(block.shape for block in measured), measured)
+    shapes = tuple(block.shape for block in measured)
+    return Blocks(shapes, measured, by_outline=observation.depth is None)

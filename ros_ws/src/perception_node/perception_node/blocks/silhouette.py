@@ -13,10 +13,11 @@ something else covers an edge, the block reaches at least as far.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -49,6 +50,8 @@ CUBE: Final = 0.02
 #: cubes, as a root mean square, are theirs [m].
 EQUAL: Final = 0.0005
 CUBES_FIT: Final = 0.0012
+#: Those of other boxes have to be nearer by this.
+BETTER: Final = 0.7
 #: A block stands no further than this beside the upright line over a place [m].
 BESIDE: Final = 0.075
 #: Yaws at which the fit begins [rad].
@@ -56,8 +59,10 @@ YAWS: Final = np.radians(np.arange(-45.0, 45.0, 7.5))
 STEPS: Final = 7
 #: An outline that differs by more than this as a root mean square is of no upright block [m].
 MISFIT: Final = 0.0035
-#: So far outside of an outline it is looked for what covers it [m].
-OUTSIDE: Final = 0.004
+#: What is within this of an outline may cover it [m],
+OUTSIDE: Final = 0.01
+#: where it looks to the side on which that is: by at least this cosine.
+FACING: Final = 0.25
 #: Sizes that blocks can have [m].
 SMALLEST: Final = 0.012
 LARGEST: Final = 0.14
@@ -123,7 +128,7 @@ def measure_silhouettes(
         BadImageError: if a block is not over a place; the sentence names its label.
     """
     outlines = [_points(segment.part, segment.outline) for segment in segments]
-    towers = _towers(segments, outlines, camera, feet)
+    towers = _towers(outlines, camera, feet)
     reach = _reach(segments, outlines, towers, camera, feet)
     shapes = [shape_from_outline(rgb, segment.part) for segment in segments]
     return _Fit(towers, shapes, reach, camera, feet).surfaces()
@@ -134,13 +139,11 @@ def _points(part: Mask, outline: Array | None) -> Array:
     if outline is not None:
         return outline
     rows, columns = np.nonzero(part)
-    around = np.array([[-0.35, -0.35], [-0.35, 0.35], [0.35, -0.35], [0.35, 0.35]])
+    around = np.array([[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5]])
     return (np.stack([columns, rows], -1)[:, None] + around).reshape(-1, 2)
 
 
-def _towers(
-    segments: Segments, outlines: Sequence[Array], camera: PinholeCamera, feet: Array
-) -> list[list[int]]:
+def _towers(outlines: Sequence[Array], camera: PinholeCamera, feet: Array) -> list[list[int]]:
     """For each place the blocks over it, from the bottom: as upright lines are seen in a picture.
 
     Raises:
@@ -188,25 +191,53 @@ def _reach(
     scale = _scales(camera, feet)[place]
     near = -_scales(camera, feet)[place]
     far, covered = np.zeros((count, DIRECTIONS)), np.zeros((count, DIRECTIONS), bool)
-    height, width = segments.label_image.shape
-    numbers = np.full(int(segments.label_image.max(initial=0)) + 1, -1)
-    numbers[[segment.label for segment in segments]] = range(count)
-    hides = segments.hides
-    for index, points in enumerate(outlines):
-        along = points @ directions.T
-        farthest = along.argmax(axis=0)
-        far[index] = along[farthest, range(DIRECTIONS)]
-        beyond = points[farthest] + directions * max(1.5, OUTSIDE * scale[index])
-        columns, rows = np.round(beyond).astype(int).T
-        columns, rows = np.clip(columns, 0, width - 1), np.clip(rows, 0, height - 1)
-        other = numbers[segments.label_image[rows, columns]]
-        # Of a tower the upper one is before the lower, seen from above; of two the nearer one is.
-        same = place[other] == place[index]
-        before = np.where(same, level[other] > level[index], near[other] < near[index])
-        covered[index] = (other >= 0) & (other != index) & before
-        if hides is not None:
-            covered[index] |= hides[rows, columns]
+    marked = np.full(int(segments.label_image.max(initial=0)) + 1, -1)
+    marked[[segment.label for segment in segments]] = range(count)
+    numbers = marked[segments.label_image]
+    if segments.hides is not None:
+        numbers[segments.hides & (numbers < 0)] = count
+    place, level = np.append(place, -1), np.append(level, 0)
+    near = np.append(near, -np.inf)
+    for index, (segment, points) in enumerate(zip(segments, outlines)):
+        far[index] = (points @ directions.T).max(axis=0)
+        gap = max(1, round(OUTSIDE * scale[index]))
+        for other, contacts, normal in _contacts(segment.part, numbers, index, gap):
+            # Of a tower the upper one is before the lower, seen from above; of two the nearer one.
+            if place[other] == place[index]:
+                before = level[other] > level[index]
+            else:
+                before = near[other] < near[index]
+            if before:
+                beyond = (contacts @ directions.T).max(axis=0) > far[index] - 0.3
+                covered[index] |= beyond & (directions @ normal > FACING)
     return Reach(directions, far, covered, scale)
+
+
+def _contacts(
+    part: Mask, numbers: NDArray[np.intp], index: int, gap: int
+) -> Iterator[tuple[int, Array, Array]]:
+    """What is beside a block: its number, its pixels there, (n, 2) [px], and on which side.
+
+    Args:
+        part: of the block, shape (height, width).
+        numbers: of what every pixel is of, -1 of nothing, shape (height, width).
+        gap: how far beside it [px].
+    """
+    left, top, width, height = cv2.boundingRect(part.astype(np.uint8))
+    box = np.s_[max(0, top - gap) : top + height + gap, max(0, left - gap) : left + width + gap]
+    corner = np.array([box[1].start, box[0].start])
+    mine = part[box].astype(np.uint8)
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * gap + 1,) * 2)
+    around = np.where(cv2.dilate(mine, disc) > 0, numbers[box], -1)
+    rows, columns = np.nonzero(mine)
+    middle = corner + [columns.mean(), rows.mean()]
+    for other in np.unique(around):
+        if other in (-1, index):
+            continue
+        rows, columns = np.nonzero(around == other)
+        points = corner + np.stack([columns, rows], -1)
+        aside = points.mean(axis=0) - middle
+        yield int(other), points.astype(float), aside / max(float(np.hypot(*aside)), 1e-9)
 
 
 class _Fit:
@@ -223,10 +254,11 @@ class _Fit:
         self.towers, self.shapes, self.reach = towers, shapes, reach
         self.camera, self.feet = camera, feet
         self.count = len(shapes)
-        most = max(len(_UNITS[shape]) for shape in shapes)
+        units = [_UNITS[shape] for shape in shapes]
+        most = max(map(len, units))
         # Bodies with fewer corners have their last one several times.
         self.units = np.stack(
-            [np.pad(u, ((0, most - len(u)), (0, 0)), mode="edge") for u in map(_UNITS.get, shapes)]
+            [np.pad(unit, ((0, most - len(unit)), (0, 0)), mode="edge") for unit in units]
         )
         self.below = np.full(self.count, -1)
         self.foot = np.zeros((self.count, 3))
@@ -245,7 +277,9 @@ class _Fit:
         start = self._start()
         values, covariance, misfit = self._fitted(start, EQUAL, EQUAL)
         if misfit.max() > CUBES_FIT:
-            values, covariance, misfit = self._fitted(start, SQUARE, CUBE)
+            others = self._fitted(start, SQUARE, CUBE)
+            if others[2].max() < BETTER * misfit.max():
+                values, covariance, misfit = others
         return tuple(
             self._surface(index, values, covariance, float(misfit[index]))
             for index in range(self.count)
@@ -267,8 +301,8 @@ class _Fit:
             values[:, _WIDE:_LOW] = np.clip(values[:, _WIDE:_LOW], SMALLEST, LARGEST)
         off, matrix, weights = self._linear(values, square, cube)
         covariance = np.linalg.inv(matrix.T @ (weights[:, None] * matrix))
-        misfit = np.sqrt(np.mean(self._off(values) ** 2, axis=1)) / self.reach.scale
-        return values, covariance, misfit
+        squares: Array = (self._off(values) ** 2).mean(axis=1)
+        return values, covariance, np.sqrt(squares) / self.reach.scale
 
     def _start(self) -> Array:
         """x, y, yaw, widths and height of each block, shape (N, 6)."""
@@ -319,9 +353,7 @@ class _Fit:
         off = self._seen(self._with_low(values)) - self.reach.far
         return np.where(self.reach.covered, np.minimum(off, 0.0), off)
 
-    def _linear(
-        self, values: Array, square: float, cube: float
-    ) -> tuple[Array, Array, Array]:
+    def _linear(self, values: Array, square: float, cube: float) -> tuple[Array, Array, Array]:
         """Residuals, their derivatives by all 6N parameters, and their weights."""
         full = self._with_low(values)
         changed = full + np.eye(7)[:, None, :] * _CHANGE
@@ -343,9 +375,7 @@ class _Fit:
             np.concatenate([weights.ravel(), sure]),
         )
 
-    def _known(
-        self, values: Array, square: float, cube: float
-    ) -> tuple[Array, Array, Array]:
+    def _known(self, values: Array, square: float, cube: float) -> tuple[Array, Array, Array]:
         """What is known beforehand, as further residuals."""
         rows, off, sure = [], [], []
 
@@ -373,9 +403,7 @@ class _Fit:
             add(wide - 0.045, WIDTH, (index, _WIDE, 1.0))
         return np.array(off), np.array(rows), np.array(sure)
 
-    def _surface(
-        self, index: int, values: Array, covariance: Array, misfit: float
-    ) -> BlockSurface:
+    def _surface(self, index: int, values: Array, covariance: Array, misfit: float) -> BlockSurface:
         x, y, yaw, wide, deep, high = (float(value) for value in values[index])
         to_block = np.zeros((7, self.count, 6))
         to_block[[0, 1, 2, 3, 4], index, [_X, _Y, _YAW, _WIDE, _DEEP]] = 1.0

@@ -130,9 +130,39 @@ class FrontView:
     def shown(self, values: NDArray[Any], size: tuple[int, int], nearest: bool = False) -> Any:
         """Values of the view's pixels at those of a picture of height and width; beyond them 0."""
         flags = cv2.INTER_NEAREST if nearest else cv2.INTER_LINEAR
-        return cv2.warpPerspective(
-            values, self.picture_from_view, (size[1], size[0]), flags=flags
+        return cv2.warpPerspective(values, self.picture_from_view, (size[1], size[0]), flags=flags)
+
+    def shown_part(
+        self, values: NDArray[np.float32], box: tuple[slice, slice], size: tuple[int, int]
+    ) -> tuple[tuple[slice, slice], NDArray[np.float32]]:
+        """A part of the view as a part of a picture, and which; beyond it -1.
+
+        Args:
+            values: shape of the box.
+            box: rows and columns of the view.
+            size: height and width of the picture.
+        """
+        top, left = box[0].start, box[1].start
+        ends = [[u, v] for u in (left, box[1].stop) for v in (top, box[0].stop)]
+        corners = self.in_picture(np.array(ends, dtype=np.float64))
+        limits = (size[1], size[0])
+        first = np.clip(np.floor(corners.min(axis=0)).astype(int) - 1, 0, limits)
+        last = np.clip(np.ceil(corners.max(axis=0)).astype(int) + 2, 0, limits)
+        there = np.array([[1.0, 0.0, -first[0]], [0.0, 1.0, -first[1]], [0.0, 0.0, 1.0]])
+        here = np.array([[1.0, 0.0, left], [0.0, 1.0, top], [0.0, 0.0, 1.0]])
+        part = (slice(int(first[1]), int(last[1])), slice(int(first[0]), int(last[0])))
+        width, height = int(last[0] - first[0]), int(last[1] - first[1])
+        if width <= 0 or height <= 0:
+            return part, np.zeros((max(height, 0), max(width, 0)), np.float32)
+        shown = cv2.warpPerspective(
+            values, there @ self.picture_from_view @ here, (width, height), borderValue=-1.0
         )
+        return part, np.asarray(shown, np.float32)
+
+    def in_picture(self, points: Array) -> Array:
+        """Where points of the view are in the picture, (n, 2) -> (n, 2) [px]."""
+        seen = np.column_stack([points, np.ones(len(points))]) @ self.picture_from_view.T
+        return np.asarray(seen[:, :2] / seen[:, 2:])
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import functools
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import cv2
@@ -14,7 +15,7 @@ from perception_node.errors import BadImageError
 from perception_node.observation import Observation
 
 from .front_view import FrontView
-from .segments import Segments
+from .segments import Segments, largest_part
 from .volume import Volume
 
 if TYPE_CHECKING:
@@ -52,11 +53,22 @@ def find_in_rgb(observation: Observation, volume: Volume | None = None) -> Segme
             "masks from colour alone need to know where the places are; set stack_positions"
         )
     view = FrontView.of(observation.camera, volume)
-    labels, hides = find_in_view(view, view.taken(observation.rgb), network())
+    found = find_in_view(view, view.taken(observation.rgb), network())
     size = (observation.rgb.shape[0], observation.rgb.shape[1])
-    return Segments.from_labels(
-        view.shown(labels, size, nearest=True), SOURCE, view.shown(hides, size, nearest=True) > 0
+    labels = np.zeros(size, np.uint8)
+    best = np.zeros(size, np.float32)
+    for label, field in enumerate(found.fields, start=1):
+        box, values = view.shown_part(field.values, field.box, size)
+        larger = values > best[box]
+        labels[box][larger] = label
+        best[box][larger] = values[larger]
+    hides = view.shown(found.hides.astype(np.uint8), size, nearest=True) > 0
+    segments = Segments.from_labels(labels, SOURCE, hides)
+    blocks = tuple(
+        replace(item, outline=view.in_picture(found.fields[item.label - 1].edge()))
+        for item in segments
     )
+    return replace(segments, blocks=blocks)
 
 
 @functools.cache
@@ -67,58 +79,115 @@ def network() -> MaskNetwork:
     return load_weights()
 
 
-def find_in_view(
-    view: FrontView, rgb: NDArray[np.uint8], network: MaskNetwork
-) -> tuple[NDArray[np.int32], NDArray[np.uint8]]:
-    """Labels of the blocks of a view, and what hides the places without being a block.
+@dataclass(frozen=True)
+class Field:
+    """How sure it is that pixels of a part of a view are of one block: positive where they are.
+
+    Attributes:
+        values: -1..1, shape of the box.
+        box: rows and columns of the part.
+    """
+
+    values: Floats
+    box: tuple[slice, slice]
+
+    def edge(self) -> NDArray[np.float64]:
+        """Where it is zero around its largest part, exact to parts of a pixel, (n, 2) [px]."""
+        inside = self.values > 0.0
+        part = cv2.dilate(largest_part(inside).astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
+        values = np.where(part, self.values, -1.0)
+        points = []
+        for axis in (0, 1):
+            here = (slice(None),) * axis + (slice(None, -1),)
+            next_one = (slice(None),) * axis + (slice(1, None),)
+            crossing = (values[here] > 0.0) != (values[next_one] > 0.0)
+            rows, columns = np.nonzero(crossing)
+            share = values[here][crossing] / (values[here][crossing] - values[next_one][crossing])
+            along = np.stack([columns, rows], axis=-1).astype(np.float64)
+            along[:, 1 - axis] += share
+            points.append(along)
+        return np.concatenate(points) + [self.box[1].start, self.box[0].start]
+
+
+@dataclass(frozen=True)
+class FoundInView:
+    """What was found in a view: one field for each block, and what hides the places, (h, w)."""
+
+    fields: tuple[Field, ...]
+    hides: Mask
+
+
+def find_in_view(view: FrontView, rgb: NDArray[np.uint8], network: MaskNetwork) -> FoundInView:
+    """The blocks of a view, and what hides the places without being a block.
 
     Args:
         rgb: as :meth:`FrontView.taken`, shape (h, w, 3).
-
-    Returns:
-        Both of shape (h, w), 0 where nothing is.
     """
     from .mask_network import BEFORE, BLOCK, predict
 
     classes, middles = predict(network, rgb, view.feet, view.aside, view.steepness)
-    kind = classes.argmax(axis=0)
-    return instances(kind == BLOCK, classes[BLOCK], middles), (kind == BEFORE).astype(np.uint8)
+    others = np.maximum(*np.delete(classes, BLOCK, axis=0))
+    return FoundInView(
+        instances(classes[BLOCK] - others, middles), classes.argmax(axis=0) == BEFORE
+    )
 
 
-def instances(block: Mask, share: Floats, middles: Floats) -> NDArray[np.int32]:
+def instances(surety: Floats, middles: Floats) -> tuple[Field, ...]:
     """Which block each pixel belongs to, by the middle that it points at.
 
     Args:
-        block: pixels of blocks, shape (h, w).
-        share: their weights, shape (h, w).
+        surety: that a pixel is of a block rather than of anything else, -1..1, shape (h, w).
         middles: from each pixel, right and down, shape (2, h, w) [px].
-
-    Returns:
-        Labels from 1, 0 where no block is, shape (h, w).
     """
-    labels = np.zeros(block.shape, np.int32)
-    rows, columns = np.nonzero(block)
+    rows, columns = np.nonzero(surety > 0.0)
     if not len(rows):
-        return labels
+        return ()
     votes = np.stack([columns, rows]) + middles[:, rows, columns]
-    peaks = _peaks(votes, share[rows, columns], block.shape)
+    peaks = _peaks(votes, surety[rows, columns], surety.shape)
     if not len(peaks):
-        return labels
+        return ()
     off = np.linalg.norm(votes[:, :, None] - peaks.T[:, None, :], axis=0)
-    nearest = off.argmin(axis=1)
-    nearest[off.min(axis=1) > ASTRAY] = -1
-    counts = np.bincount(nearest + 1, minlength=len(peaks) + 1)[1:]
-    kept = np.flatnonzero(counts >= LEAST)
-    number = np.zeros(len(peaks) + 1, np.int32)
-    number[kept] = np.arange(1, len(kept) + 1)
-    labels[rows, columns] = number[nearest]
-    return labels
+    nearest = np.where(off.min(axis=1) > ASTRAY, -1, off.argmin(axis=1))
+    kept = [index for index in range(len(peaks)) if np.count_nonzero(nearest == index) >= LEAST]
+    return tuple(
+        _field(surety, middles, peaks[kept], index, columns[nearest == peak], rows[nearest == peak])
+        for index, peak in enumerate(kept)
+    )
+
+
+def _field(
+    surety: Floats,
+    middles: Floats,
+    peaks: Floats,
+    index: int,
+    columns: NDArray[np.intp],
+    rows: NDArray[np.intp],
+) -> Field:
+    """Of one of n blocks, around its own pixels.
+
+    Args:
+        peaks: middles of all blocks, shape (n, 2) [px].
+    """
+    height, width = surety.shape
+    box = (
+        slice(max(0, int(rows.min()) - 2), min(height, int(rows.max()) + 3)),
+        slice(max(0, int(columns.min()) - 2), min(width, int(columns.max()) + 3)),
+    )
+    down, across = np.mgrid[box].astype(np.float32)
+    votes = np.stack([across, down], -1) + middles[:, box[0], box[1]].transpose(1, 2, 0)
+    off = np.linalg.norm(votes[:, :, None] - peaks, axis=-1)
+    own = off[..., index]
+    others = np.delete(off, index, axis=-1).min(axis=-1, initial=2.0 * ASTRAY)
+    values = np.minimum(surety[box], np.minimum(others - own, ASTRAY - own) / ASTRAY)
+    return Field(np.ascontiguousarray(values, dtype=np.float32), box)
 
 
 def _peaks(votes: Floats, weights: Floats, shape: tuple[int, ...]) -> Floats:
     """Where most votes are, one for each block, shape (n, 2) [px]."""
     size = (shape[0] // CELL + 1, shape[1] // CELL + 1)
-    cells = np.clip(np.round(votes / CELL).astype(int), 0, np.array([size[1], size[0]])[:, None] - 1)
+    cells = np.clip(
+        np.round(votes / CELL).astype(int), 0, np.array([size[1], size[0]])[:, None] - 1
+    )
     count = np.bincount(cells[1] * size[1] + cells[0], weights, size[0] * size[1])
     heat = cv2.GaussianBlur(count.reshape(size).astype(np.float32), (0, 0), SPREAD)
     window = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * APART + 1,) * 2)

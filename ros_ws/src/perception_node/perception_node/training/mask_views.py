@@ -128,9 +128,7 @@ def shown(views: Views, index: int, size: int, rng: np.random.Generator) -> Show
     )
 
 
-def _corner(
-    labels: NDArray[np.uint8], size: int, rng: np.random.Generator
-) -> tuple[int, int]:
+def _corner(labels: NDArray[np.uint8], size: int, rng: np.random.Generator) -> tuple[int, int]:
     """Of the part that is shown: most of them have a block in them."""
     rows, columns = np.nonzero(labels)
     corner = [int(rng.integers(0, side - size + 1)) for side in labels.shape]
@@ -211,8 +209,9 @@ def _color(
 
 def _any_color(rng: np.random.Generator) -> Floats:
     saturation, value = rng.uniform(0.0, 1.0) ** 0.7, rng.uniform(0.15, 1.0)
-    hue = np.float32([[[rng.uniform(0.0, 360.0), saturation, value]]])
-    return np.asarray(cv2.cvtColor(hue, cv2.COLOR_HSV2RGB)[0, 0])
+    offsets = np.array([0.0, 2.0, 4.0])
+    hue = np.clip(np.abs((6.0 * rng.random() + offsets) % 6.0 - 3.0) - 1.0, 0.0, 1.0)
+    return np.asarray(value * (1.0 - saturation * (1.0 - hue)), np.float32)
 
 
 def _another_room(picture: Floats, rng: np.random.Generator) -> Floats:
@@ -268,11 +267,11 @@ def _photographed(picture: Floats, rng: np.random.Generator) -> Floats:
     picture = picture * np.float32(rng.uniform(0.5, 1.15))
     if rng.random() < 0.4:
         soft = rng.uniform(0.6, 1.3, (3, 4)).astype(np.float32)
-        picture = picture * cv2.resize(soft, (width, height), interpolation=cv2.INTER_CUBIC)[
-            ..., None
-        ]
+        uneven = cv2.resize(soft, (width, height), interpolation=cv2.INTER_CUBIC)
+        picture = picture * np.asarray(uneven, np.float32)[..., None]
     if rng.random() < 0.5:
-        picture = cv2.GaussianBlur(picture, (0, 0), rng.uniform(0.3, 1.2))
+        blurred = cv2.GaussianBlur(picture, (0, 0), rng.uniform(0.3, 1.2))
+        picture = np.asarray(blurred, np.float32)
     picture = np.clip(picture, 0.0, 1.0)
     if rng.random() < 0.3:
         picture = picture ** np.float32(rng.uniform(0.7, 1.4))
@@ -282,6 +281,6 @@ def _photographed(picture: Floats, rng: np.random.Generator) -> Floats:
     if rng.random() < 0.2:
         coded = np.clip(255.0 * picture, 0, 255).astype(np.uint8)
         quality = [cv2.IMWRITE_JPEG_QUALITY, int(rng.integers(50, 96))]
-        coded = cv2.imdecode(cv2.imencode(".jpg", coded, quality)[1], cv2.IMREAD_COLOR)
-        picture = coded.astype(np.float32) / 255.0
+        read = cv2.imdecode(cv2.imencode(".jpg", coded, quality)[1], cv2.IMREAD_COLOR)
+        picture = np.asarray(read, np.float32) / 255.0
     return np.clip(picture, 0.0, 1.0).astype(np.float32)
