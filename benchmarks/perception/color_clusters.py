@@ -54,8 +54,8 @@ def _sorted(rgb: NDArray[np.uint8]) -> tuple[NDArray[np.int32], NDArray[np.int32
     lab[..., 0] *= LIGHT
     criteria = (cv2.TERM_CRITERIA_MAX_ITER, 15, 0.0)
     cv2.setRNGSeed(0)
-    _, flat, _ = cv2.kmeans(
-        lab.reshape(-1, 3), COLORS, np.zeros(0, np.int32), criteria, 2, cv2.KMEANS_PP_CENTERS
-    )
-    kinds = flat.reshape(rgb.shape[:2])
+    start = np.zeros(0, np.int32)
+    pixels = lab.reshape(-1, 3)
+    _, flat, _ = cv2.kmeans(pixels, COLORS, start, criteria, 2, cv2.KMEANS_PP_CENTERS)
+    kinds = np.asarray(flat, np.int32).reshape(rgb.shape[:2])
     return kinds, np.concatenate([kinds[0], kinds[:, 0], kinds[:, -1]])

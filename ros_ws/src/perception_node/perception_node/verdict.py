@@ -27,6 +27,8 @@ GRAIN: Final = 8.0
 
 #: Centres that follow from outlines alone may be so many times less certain than measured ones.
 BY_OUTLINE: Final = 3.0
+#: What is so many times as high as wide may be two blocks, where no depth shows that it is not.
+TALL: Final = 1.5
 
 _TIDY_UP: Final = "look again, or tidy up by hand"
 
@@ -61,6 +63,8 @@ def judge(
     if names.doubt:
         return Verdict(GraphStatus.LOW_CONFIDENCE, names.doubt)
     if sentence := unclear_shape(blocks, names.names):
+        return Verdict(GraphStatus.LOW_CONFIDENCE, sentence)
+    if sentence := two_in_one(blocks, names.names):
         return Verdict(GraphStatus.LOW_CONFIDENCE, sentence)
     if sentence := doubtful(blocks, names.names, config.limits):
         return Verdict(GraphStatus.LOW_CONFIDENCE, sentence)
@@ -192,6 +196,18 @@ def doubtful(blocks: Blocks, names: tuple[str, ...], limits: StabilityLimits) ->
         f"{1000 * deviations[worst]:.1f} mm only (required: {1000 * most:.1f} mm); look "
         "from another side or from higher up"
     )
+
+
+def two_in_one(blocks: Blocks, names: tuple[str, ...]) -> str:
+    """A sentence about the first block that may be two in one outline, or an empty string."""
+    for block, name in zip(blocks.measured, names):
+        wide, deep, high = block.pose.size
+        if blocks.by_outline and high > TALL * max(wide, deep):
+            return (
+                f"{name} is {high / max(wide, deep):.1f} times as high as wide: in colour alone it "
+                "may be two blocks; set mask_source to rgbd, or take it away"
+            )
+    return ""
 
 
 def unclear_shape(blocks: Blocks, names: tuple[str, ...]) -> str:

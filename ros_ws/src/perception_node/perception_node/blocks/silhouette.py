@@ -301,8 +301,8 @@ class _Fit:
             values[:, _WIDE:_LOW] = np.clip(values[:, _WIDE:_LOW], SMALLEST, LARGEST)
         off, matrix, weights = self._linear(values, square, cube)
         covariance = np.linalg.inv(matrix.T @ (weights[:, None] * matrix))
-        squares: Array = (self._off(values) ** 2).mean(axis=1)
-        return values, covariance, np.sqrt(squares) / self.reach.scale
+        squares = (self._off(values) ** 2).mean(axis=1)
+        return values, np.asarray(covariance, np.float64), np.sqrt(squares) / self.reach.scale
 
     def _start(self) -> Array:
         """x, y, yaw, widths and height of each block, shape (N, 6)."""

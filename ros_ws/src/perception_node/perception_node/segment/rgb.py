@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from perception_node.errors import BadImageError
 from perception_node.observation import Observation
 
+from .background import stands_behind
 from .front_view import FrontView
 from .segments import Segments, largest_part
 from .volume import Volume
@@ -30,7 +31,7 @@ CELL: Final = 2
 SPREAD: Final = 1.3
 APART: Final = 3
 #: A block has at least so many pixels of the view: of one of 2.5 cm a quarter is seen.
-LEAST: Final = 36
+LEAST: Final = 50
 #: A pixel that points further than this beside all middles is of none [px].
 ASTRAY: Final = 12.0
 SOURCE: Final = "what was found in camera/image_raw"
@@ -91,6 +92,12 @@ class Field:
     values: Floats
     box: tuple[slice, slice]
 
+    def mask(self, shape: tuple[int, ...]) -> Mask:
+        """Its pixels in the view, whose height and width are given."""
+        mask = np.zeros(shape, bool)
+        mask[self.box] = self.values > 0.0
+        return mask
+
     def edge(self) -> NDArray[np.float64]:
         """Where it is zero around its largest part, exact to parts of a pixel, (n, 2) [px]."""
         inside = self.values > 0.0
@@ -126,9 +133,12 @@ def find_in_view(view: FrontView, rgb: NDArray[np.uint8], network: MaskNetwork) 
     from .mask_network import BEFORE, BLOCK, predict
 
     classes, middles = predict(network, rgb, view.feet, view.aside, view.steepness)
-    others = np.maximum(*np.delete(classes, BLOCK, axis=0))
+    surety = classes[BLOCK] - np.maximum(*np.delete(classes, BLOCK, axis=0))
+    fields = instances(surety, middles)
+    behind = stands_behind([field.mask(surety.shape) for field in fields], view, rgb, surety)
     return FoundInView(
-        instances(classes[BLOCK] - others, middles), classes.argmax(axis=0) == BEFORE
+        tuple(field for field, away in zip(fields, behind) if not away),
+        classes.argmax(axis=0) == BEFORE,
     )
 
 

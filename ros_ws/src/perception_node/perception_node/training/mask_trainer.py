@@ -33,7 +33,7 @@ class MaskTraining:
         seed: of weights, batches and paint.
     """
 
-    steps: int = 3600
+    steps: int = 2200
     batch: int = 6
     size: int = 160
     learning_rate: float = 2e-3
