@@ -130,8 +130,14 @@ def measure_silhouettes(
     outlines = [_points(segment.part, segment.outline) for segment in segments]
     towers = _towers(outlines, camera, feet)
     reach = _reach(segments, outlines, towers, camera, feet)
-    shapes = [shape_from_outline(rgb, segment.part) for segment in segments]
+    shapes = [_shape(rgb, segment.part) for segment in segments]
     return _Fit(towers, shapes, reach, camera, feet).surfaces()
+
+
+def _shape(rgb: NDArray[np.uint8], part: Mask) -> str:
+    left, top, width, height = cv2.boundingRect(part.astype(np.uint8))
+    box = np.s_[max(0, top - 1) : top + height + 1, max(0, left - 1) : left + width + 1]
+    return shape_from_outline(rgb[box], part[box])
 
 
 def _points(part: Mask, outline: Array | None) -> Array:

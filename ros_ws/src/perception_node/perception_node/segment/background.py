@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """What looks like a block and stands behind the row: with the plain table before it.
 
-A block stands on a place or on another block, and so has its lower end right there in the view. What
-has not, and has nothing between its lower end and the row but the table, is behind it. Where there
-is something, it may stand on a block that was missed, and is kept: it fits on nothing then, and the
-picture is refused.
+A block stands on a place or on another block, and so has its lower end right there in the view.
+What has not, and has nothing between its lower end and the row but the table, is behind it. Where
+there is something, it may stand on a block that was missed, and is kept: it fits on nothing then,
+and the picture is refused.
 """
 
 from __future__ import annotations
@@ -26,6 +26,9 @@ BEHIND: Final = 0.045
 OVER: Final = 0.3
 #: Between what is behind the row and the row, colours of rows of the view differ by less [0..255],
 ONE_COLOR: Final = 22.0
+#: the same that they have so far aside, so widely [px],
+ASIDE: Final = 5
+WIDE: Final = 6
 #: and no pixel is of a block with a surety of more than this.
 DOUBT: Final = -0.5
 
@@ -43,23 +46,17 @@ def stands_behind(
     spans = [_Span(mask) for mask in masks]
     order = sorted(range(len(masks)), key=lambda index: -spans[index].low)
     slack = EXACT + BEHIND * view.steepness / PITCH
-    stands: list[int] = []
     behind = [False] * len(masks)
-    for index in order:
+    for done, index in enumerate(order):
         span = spans[index]
-        ground = float(view.feet[(span.left + span.right) // 2])
-        below = [spans[other] for other in stands if span.is_over(spans[other])]
-        level = min([other.high for other in below], default=ground - slack + EXACT)
-        if span.low >= level - EXACT:
-            stands.append(index)
-            continue
-        if below:
-            first_below = int(level) - EXACT
+        below = [other for other in order[:done] if span.is_over(spans[other])]
+        next_one = min(below, key=lambda other: spans[other].high, default=None)
+        ground = float(view.feet[(span.left + span.right) // 2]) - slack
+        level = ground + EXACT if next_one is None else spans[next_one].high
+        if span.low >= level - EXACT:  # it is where what is below it is
+            behind[index] = next_one is not None and behind[next_one]
         else:
-            first_below = int(ground - slack)
-        behind[index] = _is_table(rgb, surety, span, first_below)
-        if not behind[index]:
-            stands.append(index)
+            behind[index] = _is_table(rgb, surety, span, int(level) - EXACT)
     return behind
 
 
@@ -79,13 +76,17 @@ class _Span:
 
 
 def _is_table(rgb: NDArray[np.uint8], surety: NDArray[np.float32], span: _Span, last: int) -> bool:
-    """Whether from a mask's lower end down to a row there is one surface."""
+    """Whether from a mask's lower end down to a row there is what is on one side as well."""
     quarter = (span.right - span.left) // 4
-    strip = np.s_[span.low + 3 : last, span.left + quarter : span.right - quarter + 1]
-    rows = rgb[strip]
-    if len(rows) < 2:
+    rows = slice(span.low + 3, last)
+    strip = np.s_[rows, span.left + quarter : span.right - quarter + 1]
+    if rows.stop - rows.start < 2 or surety[strip].max() >= DOUBT:
         return False
-    colors = np.median(rows, axis=1)
-    if np.ptp(colors, axis=0).max() > ONE_COLOR:
-        return False
-    return bool(surety[strip].max() < DOUBT)
+    colors = np.median(rgb[strip], axis=1)
+    for first in (span.left - ASIDE - WIDE, span.right + ASIDE + 1):
+        side = rgb[rows, max(first, 0) : max(first + WIDE, 0)]
+        if side.shape[1]:
+            together = np.concatenate([colors, np.median(side, axis=1)])
+            if np.ptp(together, axis=0).max() <= ONE_COLOR:
+                return True
+    return False
