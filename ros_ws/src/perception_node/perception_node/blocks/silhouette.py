@@ -49,7 +49,7 @@ CUBE: Final = 0.02
 #: How equal the edges of cubes are, and outlines that all differ by no more than this from those of
 #: cubes, as a root mean square, are theirs [m].
 EQUAL: Final = 0.0005
-CUBES_FIT: Final = 0.0012
+CUBES_FIT: Final = 0.0016
 #: Those of other boxes have to be nearer by this.
 BETTER: Final = 0.7
 #: A block stands no further than this beside the upright line over a place [m].
@@ -63,6 +63,10 @@ MISFIT: Final = 0.0035
 OUTSIDE: Final = 0.01
 #: where it looks to the side on which that is: by at least this cosine.
 FACING: Final = 0.25
+#: What stands on a block hides of its top about as much as it is wide, less where it stands further
+#: back: at least this part; for a camera that looks down on it by this tangent or more.
+HIDES: Final = 0.64
+LEAST_STEEP: Final = 0.08
 #: Sizes that blocks can have [m].
 SMALLEST: Final = 0.012
 LARGEST: Final = 0.14
@@ -131,7 +135,7 @@ def measure_silhouettes(
     towers = _towers(outlines, camera, feet)
     reach = _reach(segments, outlines, towers, camera, feet)
     shapes = [_shape(rgb, segment.part) for segment in segments]
-    return _Fit(towers, shapes, reach, camera, feet).surfaces()
+    return _Fit(towers, shapes, reach, outlines, camera, feet).surfaces()
 
 
 def _shape(rgb: NDArray[np.uint8], part: Mask) -> str:
@@ -246,6 +250,20 @@ def _contacts(
         yield int(other), points.astype(float), aside / max(float(np.hypot(*aside)), 1e-9)
 
 
+def _upper_edge(corners: Array, columns: Array) -> Array:
+    """The row of a convex outline's upper boundary at columns, NaN beside it, (n, 2) and (k,)."""
+    hull = cv2.convexHull(corners.astype(np.float32))[:, 0].astype(np.float64)
+    rows = np.full((len(hull), len(columns)), np.nan)
+    for index, (begin, end) in enumerate(zip(hull, np.roll(hull, -1, axis=0))):
+        if begin[0] > end[0]:
+            begin, end = end, begin
+        within = (columns >= begin[0]) & (columns <= end[0]) & (end[0] > begin[0])
+        share = (columns[within] - begin[0]) / (end[0] - begin[0])
+        rows[index, within] = begin[1] + share * (end[1] - begin[1])
+    rows = np.where(np.isnan(rows), np.inf, rows).min(axis=0)
+    return np.where(np.isinf(rows), np.nan, rows)
+
+
 class _Fit:
     """All blocks of a picture, fitted at once."""
 
@@ -254,10 +272,13 @@ class _Fit:
         towers: Sequence[Sequence[int]],
         shapes: Sequence[str],
         reach: Reach,
+        outlines: Sequence[Array],
         camera: PinholeCamera,
         feet: Array,
     ) -> None:
         self.towers, self.shapes, self.reach = towers, shapes, reach
+        self.outlines = outlines
+        self.behind = np.zeros(len(shapes), bool)
         self.camera, self.feet = camera, feet
         self.count = len(shapes)
         units = [_UNITS[shape] for shape in shapes]
@@ -281,31 +302,87 @@ class _Fit:
     def surfaces(self) -> tuple[BlockSurface, ...]:
         """What was found, in the order of the segments."""
         start = self._start()
-        values, covariance, misfit = self._fitted(start, EQUAL, EQUAL)
-        if misfit.max() > CUBES_FIT:
+        fits = [self._fitted(start, EQUAL, EQUAL, alike=True)]
+        if fits[0][2].max() > CUBES_FIT:
+            start = self._turned(start)
+            fits.append(self._fitted(start, EQUAL, EQUAL))
+        if fits[-1][2].max() > CUBES_FIT:
             others = self._fitted(start, SQUARE, CUBE)
-            if others[2].max() < BETTER * misfit.max():
-                values, covariance, misfit = others
+            if others[2].max() < BETTER * fits[-1][2].max():
+                fits.append(others)
+        values, covariance, misfit = fits[-1]
+        self._mark_behind(values)
         return tuple(
             self._surface(index, values, covariance, float(misfit[index]))
             for index in range(self.count)
         )
 
-    def _fitted(self, values: Array, square: float, cube: float) -> tuple[Array, Array, Array]:
+    def _turned(self, start: Array) -> Array:
+        """Where the fit of cubes ends that began at the best of several yaws, for each block.
+
+        One that is turned by an eighth and smaller looks nearly the same.
+        """
+        ends, misfits = [], []
+        for yaw in (None, 0.0, 0.25 * np.pi):
+            turned = start.copy()
+            if yaw is not None:
+                turned[[shape == BOX for shape in self.shapes], _YAW] = yaw
+            values, _, misfit = self._fitted(turned, EQUAL, EQUAL)
+            ends.append(values)
+            misfits.append(misfit)
+        best = np.array(misfits).argmin(axis=0)
+        return np.asarray(np.array(ends)[best, np.arange(self.count)])
+
+    def _mark_behind(self, values: Array) -> None:
+        """Marks what does not hide the top of the block below it as far as what stands there does.
+
+        What stands on a block hides its top from the front edge of its own lower end to the back;
+        what is behind it ends where that top does.
+        """
+        full = self._with_low(values)
+        for upper, lower in enumerate(self.below):
+            if lower < 0:
+                continue
+            size = values[lower, _WIDE:_LOW]
+            corners = _UNITS[self.shapes[lower]] * size
+            corners = corners[corners[:, 2] > 0.0]
+            c, s = np.cos(values[lower, _YAW]), np.sin(values[lower, _YAW])
+            turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+            height = full[lower, _LOW] + 0.5 * size[2]
+            top = corners @ turn + [*values[lower, :2], height]
+            edge = self.camera.project(top)
+            points = self.outlines[upper]
+            left, right = np.quantile(points[:, 0], [0.3, 0.7])
+            middle = (points[:, 0] >= left) & (points[:, 0] <= right)
+            ends = points[middle & (points[:, 1] > np.median(points[:, 1]))]
+            # The upper boundary of the top is that of its convex outline.
+            back = _upper_edge(edge, ends[:, 0])
+            inside = np.isfinite(back)
+            off = self.camera.position_world - top.mean(axis=0)
+            steep = float(off[2] / np.hypot(*off[:2]))
+            if not inside.any() or steep < LEAST_STEEP:
+                continue
+            hides = float(np.median(ends[inside, 1] - back[inside])) / self.reach.scale[upper]
+            self.behind[upper] = hides < HIDES * steep * values[upper, _WIDE]
+
+    def _fitted(
+        self, values: Array, square: float, cube: float, alike: bool = False
+    ) -> tuple[Array, Array, Array]:
         """Parameters, their covariance, and by how much outlines differ [m].
 
         Args:
             values: where the fit begins.
             square, cube: by how much the widths, and the height and a width, of a box differ.
+            alike: whether all blocks have one width.
         """
         for _ in range(STEPS):
-            off, matrix, weights = self._linear(values, square, cube)
+            off, matrix, weights = self._linear(values, square, cube, alike)
             normal = matrix.T @ (weights[:, None] * matrix)
             step = np.linalg.solve(normal, -matrix.T @ (weights * off)).reshape(self.count, 6)
             limit = np.array([0.02, 0.02, 0.25, 0.02, 0.02, 0.02])
             values = values + np.clip(step, -limit, limit)
             values[:, _WIDE:_LOW] = np.clip(values[:, _WIDE:_LOW], SMALLEST, LARGEST)
-        off, matrix, weights = self._linear(values, square, cube)
+        off, matrix, weights = self._linear(values, square, cube, alike)
         covariance = np.linalg.inv(matrix.T @ (weights[:, None] * matrix))
         squares = (self._off(values) ** 2).mean(axis=1)
         return values, np.asarray(covariance, np.float64), np.sqrt(squares) / self.reach.scale
@@ -359,7 +436,9 @@ class _Fit:
         off = self._seen(self._with_low(values)) - self.reach.far
         return np.where(self.reach.covered, np.minimum(off, 0.0), off)
 
-    def _linear(self, values: Array, square: float, cube: float) -> tuple[Array, Array, Array]:
+    def _linear(
+        self, values: Array, square: float, cube: float, alike: bool
+    ) -> tuple[Array, Array, Array]:
         """Residuals, their derivatives by all 6N parameters, and their weights."""
         full = self._with_low(values)
         changed = full + np.eye(7)[:, None, :] * _CHANGE
@@ -374,14 +453,16 @@ class _Fit:
         matrix[..., _HIGH] += slopes[_LOW][:, :, None] * self.under[:, None, :]
         doubt = COMMON * OUTLINE * self.reach.scale[:, None]
         weights = active / doubt**2
-        known, derivative, sure = self._known(values, square, cube)
+        known, derivative, sure = self._known(values, square, cube, alike)
         return (
             np.concatenate([(off * active).ravel(), known]),
             np.concatenate([matrix.reshape(count * k, 6 * count), derivative]),
             np.concatenate([weights.ravel(), sure]),
         )
 
-    def _known(self, values: Array, square: float, cube: float) -> tuple[Array, Array, Array]:
+    def _known(
+        self, values: Array, square: float, cube: float, alike: bool
+    ) -> tuple[Array, Array, Array]:
         """What is known beforehand, as further residuals."""
         rows, off, sure = [], [], []
 
@@ -407,6 +488,9 @@ class _Fit:
             high_as_wide = 1e-4 if self.shapes[index] == SPHERE else cube if is_box else CUBE
             add(high - wide, high_as_wide, (index, _HIGH, 1.0), (index, _WIDE, -1.0))
             add(wide - 0.045, WIDTH, (index, _WIDE, 1.0))
+            if alike and index:
+                before = values[index - 1, _WIDE]
+                add(wide - before, EQUAL, (index, _WIDE, 1.0), (index - 1, _WIDE, -1.0))
         return np.array(off), np.array(rows), np.array(sure)
 
     def _surface(self, index: int, values: Array, covariance: Array, misfit: float) -> BlockSurface:
@@ -425,5 +509,5 @@ class _Fit:
         doubt = flat @ covariance @ flat.T + 1e-9 * np.eye(7)
         return BlockSurface(
             self.shapes[index], (x, y), yaw - turn * np.pi / 2, (wide, deep), low, low + high,
-            doubt, upright=misfit < MISFIT, seen_low=low,
+            doubt, upright=misfit < MISFIT, seen_low=low, behind=bool(self.behind[index]),
         )  # fmt: skip

@@ -34,6 +34,10 @@ APART: Final = 3
 LEAST: Final = 50
 #: A pixel that points further than this beside all middles is of none [px].
 ASTRAY: Final = 12.0
+#: The least surety of a block is about 0.84, and it fills this part of its convex outline.
+UNSURE: Final = 0.65
+RAGGED: Final = 0.8
+UNLIKELY: Final = 0.4
 SOURCE: Final = "what was found in camera/image_raw"
 
 
@@ -87,10 +91,23 @@ class Field:
     Attributes:
         values: -1..1, shape of the box.
         box: rows and columns of the part.
+        surety: that its pixels are of a block at all, their mean, -1..1.
     """
 
     values: Floats
     box: tuple[slice, slice]
+    surety: float
+
+    @property
+    def is_vague(self) -> bool:
+        """Whether it is hardly likely, and ragged, as no block is."""
+        inside = self.values > 0.0
+        if not inside.any():
+            return True
+        points = cv2.findNonZero(inside.astype(np.uint8))
+        around = cv2.contourArea(cv2.convexHull(points)) + 1.0
+        unsure = self.surety < UNSURE
+        return bool(unsure and len(points) < RAGGED * around) or self.surety < UNLIKELY
 
     def mask(self, shape: tuple[int, ...]) -> Mask:
         """Its pixels in the view, whose height and width are given."""
@@ -134,7 +151,7 @@ def find_in_view(view: FrontView, rgb: NDArray[np.uint8], network: MaskNetwork) 
 
     classes, middles = predict(network, rgb, view.feet, view.aside, view.steepness)
     surety = classes[BLOCK] - np.maximum(*np.delete(classes, BLOCK, axis=0))
-    fields = instances(surety, middles)
+    fields = tuple(field for field in instances(surety, middles) if not field.is_vague)
     behind = stands_behind([field.mask(surety.shape) for field in fields], view, rgb, surety)
     return FoundInView(
         tuple(field for field, away in zip(fields, behind) if not away),
@@ -189,7 +206,8 @@ def _field(
     own = off[..., index]
     others = np.delete(off, index, axis=-1).min(axis=-1, initial=2.0 * ASTRAY)
     values = np.minimum(surety[box], np.minimum(others - own, ASTRAY - own) / ASTRAY)
-    return Field(np.ascontiguousarray(values, dtype=np.float32), box)
+    sure = float(surety[box][values > 0.0].mean()) if (values > 0.0).any() else -1.0
+    return Field(np.ascontiguousarray(values, dtype=np.float32), box, sure)
 
 
 def _peaks(votes: Floats, weights: Floats, shape: tuple[int, ...]) -> Floats:
