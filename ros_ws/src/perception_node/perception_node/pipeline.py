@@ -170,12 +170,7 @@ class Perception:
             raise BadImageError(
                 "the places lie in two rows, which only depth tells apart; set mask_source to rgbd"
             )
-        surfaces = measure(observation, segments, places.places)
-        behind = [index for index, item in enumerate(surfaces) if item.behind]
-        if behind:
-            segments = segments.without(behind)
-            surfaces = measure(observation, segments, places.places)
-        return Seen(segments, surfaces)
+        return Seen(segments, measure(observation, segments, places.places))
 
     def _aligned(self, observation: Observation) -> Observation:
         """With edges where they are, where the places are seen and depth can be moved to colour."""

@@ -64,6 +64,13 @@ def judge(
         return Verdict(GraphStatus.LOW_CONFIDENCE, names.doubt)
     if sentence := unclear_shape(blocks, names.names):
         return Verdict(GraphStatus.LOW_CONFIDENCE, sentence)
+    if blocks.behind:
+        return Verdict(
+            GraphStatus.LOW_CONFIDENCE,
+            f"{names.names[blocks.behind[0]]} may stand behind the block below it, rather than on "
+            "it: in colour alone that looks the same; look from higher up, or set mask_source to "
+            "rgbd",
+        )
     if sentence := two_in_one(blocks, names.names):
         return Verdict(GraphStatus.LOW_CONFIDENCE, sentence)
     if sentence := doubtful(blocks, names.names, config.limits):

@@ -29,11 +29,13 @@ class Blocks:
         shapes: ``box``, ``cylinder`` or ``sphere`` for each.
         measured: all of them, or none where camera, or depth of masks that were given, are missing.
         by_outline: whether they were measured by their outlines, not by depth.
+        behind: indices of those that may be behind the block below them rather than on it.
     """
 
     shapes: tuple[str, ...]
     measured: tuple[MeasuredBlock, ...] = ()
     by_outline: bool = False
+    behind: tuple[int, ...] = ()
 
     @property
     def poses(self) -> tuple[BlockPose | None, ...]:
@@ -95,4 +97,5 @@ def find_blocks(
         return Blocks(shapes)
     measured = pose_blocks(surfaces, standing.stacks, standing.table_heights, covered, smallest)
     shapes = tuple(block.shape for block in measured)
-    return Blocks(shapes, measured, by_outline=observation.depth is None)
+    behind = tuple(index for index, item in enumerate(surfaces) if item.behind)
+    return Blocks(shapes, measured, by_outline=observation.depth is None, behind=behind)

@@ -65,7 +65,7 @@ OUTSIDE: Final = 0.01
 FACING: Final = 0.25
 #: What stands on a block hides of its top about as much as it is wide, less where it stands further
 #: back: at least this part; for a camera that looks down on it by this tangent or more.
-HIDES: Final = 0.64
+HIDES: Final = 0.66
 LEAST_STEEP: Final = 0.08
 #: Sizes that blocks can have [m].
 SMALLEST: Final = 0.012

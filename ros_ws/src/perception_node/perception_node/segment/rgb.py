@@ -16,7 +16,7 @@ from perception_node.observation import Observation
 
 from .background import stands_behind
 from .front_view import FrontView
-from .segments import Segments, largest_part
+from .segments import Segment, Segments, largest_part
 from .volume import Volume
 
 if TYPE_CHECKING:
@@ -38,6 +38,10 @@ ASTRAY: Final = 12.0
 UNSURE: Final = 0.65
 RAGGED: Final = 0.8
 UNLIKELY: Final = 0.4
+#: The upper and the lower part of a mask, as parts of its pixels, and by how much the channels'
+#: shares of their colours differ at most.
+PARTS: Final = 0.3
+OTHER_HUE: Final = 0.08
 SOURCE: Final = "what was found in camera/image_raw"
 
 
@@ -69,11 +73,29 @@ def find_in_rgb(observation: Observation, volume: Volume | None = None) -> Segme
         best[box][larger] = values[larger]
     hides = view.shown(found.hides.astype(np.uint8), size, nearest=True) > 0
     segments = Segments.from_labels(labels, SOURCE, hides)
+    for item in segments:
+        _check_one_color(observation.rgb, item)
     blocks = tuple(
         replace(item, outline=view.in_picture(found.fields[item.label - 1].edge()))
         for item in segments
     )
     return replace(segments, blocks=blocks)
+
+
+def _check_one_color(rgb: NDArray[np.uint8], segment: Segment) -> None:
+    """Raises BadImageError if the upper and the lower part of a mask have other hues."""
+    rows, columns = np.nonzero(segment.part)
+    low, high = np.quantile(rows, [PARTS, 1.0 - PARTS])
+    hues = []
+    for part in (rows <= low, rows >= high):
+        values = rgb[rows[part], columns[part]].astype(np.float64) + 1.0
+        hues.append(np.median(values / values.sum(axis=1, keepdims=True), axis=0))
+    if np.abs(hues[0] - hues[1]).max() > OTHER_HUE:
+        raise BadImageError(
+            f"what is seen at pixel ({np.median(columns):.0f}, {np.median(rows):.0f}) has one "
+            "colour above and another one below, so it may be two blocks; give more light, or set "
+            "mask_source to rgbd"
+        )
 
 
 @functools.cache
