@@ -81,10 +81,11 @@ def test_what_has_plain_table_before_it_is_behind_the_row() -> None:
     table = np.full((*view.shape, 3), 170, np.uint8)
     surety = np.where(np.logical_or.reduce(masks), 1.0, -1.0).astype(np.float32)
     assert stands_behind(masks, view, table, surety) == [False, False, True]
+    alone = np.where(masks[0], np.float32(-1.0), surety).astype(np.float32)
     # Without the one it stands on, the second is behind the row as well, unless something is there.
-    assert stands_behind(masks[1:], view, table, surety - masks[0] * 2.0) == [True, True]
+    assert stands_behind(masks[1:], view, table, alone) == [True, True]
     table[masks[0]] = (200, 30, 30)
-    assert not stands_behind(masks[1:], view, table, surety - masks[0] * 2.0)[0]
+    assert not stands_behind(masks[1:], view, table, alone)[0]
 
 
 # Refused

@@ -25,6 +25,7 @@ from .places.occlusion import find_occlusion
 from .places.table import table_problem
 from .probability import evidence, load_parameters, probability
 from .segment import (
+    RGB,
     SEGMENTERS,
     Segmenter,
     Segments,
@@ -181,8 +182,8 @@ class Perception:
 
     def _segments(self, observation: Observation) -> Segments:
         segmenter = self.segmenter or SEGMENTERS[self.config.mask_source]
-        drawn = observation.depth is None and observation.labels is not None
-        if drawn and self.segmenter is None:
+        alone = self.config.mask_source == RGB and observation.labels is None
+        if observation.depth is None and self.segmenter is None and not alone:
             segmenter = given_labels  # a goal image, drawn by hand
         segments = segmenter(observation, self._volume)
         if segments.label_image.shape != observation.rgb.shape[:2]:

@@ -13,8 +13,7 @@ something else covers an edge, the block reaches at least as far.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from typing import Final
 
 import cv2
@@ -22,18 +21,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception_node.camera import PinholeCamera
-from perception_node.errors import BadImageError
 from perception_node.segment import Segments
 from scene_graph import BOX, CYLINDER, SPHERE
 
 from .measure import BlockSurface
 from .outline import shape_from_outline
+from .reach import DIRECTIONS, Reach, points_around, reach_of, towers_over
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-#: So many directions are looked at.
-DIRECTIONS: Final = 32
 #: Standard deviation of where an outline is, at the block [m], and so many times as much for what
 #: neighbouring directions have in common.
 OUTLINE: Final = 0.001
@@ -52,17 +49,11 @@ EQUAL: Final = 0.0005
 CUBES_FIT: Final = 0.0016
 #: Those of other boxes have to be nearer by this.
 BETTER: Final = 0.7
-#: A block stands no further than this beside the upright line over a place [m].
-BESIDE: Final = 0.075
 #: Yaws at which the fit begins [rad].
 YAWS: Final = np.radians(np.arange(-45.0, 45.0, 7.5))
 STEPS: Final = 7
 #: An outline that differs by more than this as a root mean square is of no upright block [m].
 MISFIT: Final = 0.0035
-#: What is within this of an outline may cover it [m],
-OUTSIDE: Final = 0.01
-#: where it looks to the side on which that is: by at least this cosine.
-FACING: Final = 0.25
 #: What stands on a block hides of its top about as much as it is wide, less where it stands further
 #: back: at least this part; for a camera that looks down on it by this tangent or more.
 HIDES: Final = 0.66
@@ -102,23 +93,6 @@ def _unit(shape: str) -> Array:
 _UNITS: Final = {shape: _unit(shape) for shape in (BOX, CYLINDER, SPHERE)}
 
 
-@dataclass(frozen=True)
-class Reach:
-    """How far the masks of N blocks reach, in K directions.
-
-    Attributes:
-        directions: shape (K, 2).
-        far: shape (N, K) [px].
-        covered: where something else covers the edge, shape (N, K).
-        scale: pixels for a metre at each block, shape (N,).
-    """
-
-    directions: Array
-    far: Array
-    covered: Mask
-    scale: Array
-
-
 def measure_silhouettes(
     rgb: NDArray[np.uint8], segments: Segments, camera: PinholeCamera, feet: Array
 ) -> tuple[BlockSurface, ...]:
@@ -131,9 +105,9 @@ def measure_silhouettes(
     Raises:
         BadImageError: if a block is not over a place; the sentence names its label.
     """
-    outlines = [_points(segment.part, segment.outline) for segment in segments]
-    towers = _towers(outlines, camera, feet)
-    reach = _reach(segments, outlines, towers, camera, feet)
+    outlines = [points_around(segment.part, segment.outline) for segment in segments]
+    towers = towers_over(outlines, camera, feet)
+    reach = reach_of(segments, outlines, towers, camera, feet)
     shapes = [_shape(rgb, segment.part) for segment in segments]
     return _Fit(towers, shapes, reach, outlines, camera, feet).surfaces()
 
@@ -142,112 +116,6 @@ def _shape(rgb: NDArray[np.uint8], part: Mask) -> str:
     left, top, width, height = cv2.boundingRect(part.astype(np.uint8))
     box = np.s_[max(0, top - 1) : top + height + 1, max(0, left - 1) : left + width + 1]
     return shape_from_outline(rgb[box], part[box])
-
-
-def _points(part: Mask, outline: Array | None) -> Array:
-    """Points around a mask, of its pixels' corners where no finer ones are known, (n, 2) [px]."""
-    if outline is not None:
-        return outline
-    rows, columns = np.nonzero(part)
-    around = np.array([[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5]])
-    return (np.stack([columns, rows], -1)[:, None] + around).reshape(-1, 2)
-
-
-def _towers(outlines: Sequence[Array], camera: PinholeCamera, feet: Array) -> list[list[int]]:
-    """For each place the blocks over it, from the bottom: as upright lines are seen in a picture.
-
-    Raises:
-        BadImageError: if a block is over none.
-    """
-    up = np.array([0.0, 0.0, 0.3])
-    low, high = camera.project(feet), camera.project(feet + up)
-    scale = _scales(camera, feet)
-    towers: list[list[tuple[float, int]]] = [[] for _ in feet]
-    for index, points in enumerate(outlines):
-        middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-        along = (middle[1] - low[:, 1]) / (high[:, 1] - low[:, 1])
-        off = np.abs(middle[0] - (low + along[:, None] * (high - low))[:, 0]) / scale
-        place = int(off.argmin())
-        if off[place] > BESIDE:
-            raise BadImageError(
-                f"what is seen at pixel ({middle[0]:.0f}, {middle[1]:.0f}) stands on no place: it "
-                f"is {1000 * off[place]:.0f} mm beside the nearest; put every block on a place, or "
-                "check the parameter stack_positions and camera/extrinsics"
-            )
-        towers[place].append((-float(middle[1]), index))
-    return [[index for _, index in sorted(tower)] for tower in towers]
-
-
-def _scales(camera: PinholeCamera, points: Array) -> Array:
-    """Pixels for a metre across, at points, shape (n,)."""
-    forward = camera.world_from_optical[:3, 2]
-    depth = (points - camera.position_world) @ forward
-    return np.asarray(camera.intrinsics[0, 0] / np.maximum(depth, 1e-3))
-
-
-def _reach(
-    segments: Segments,
-    outlines: Sequence[Array],
-    towers: Sequence[Sequence[int]],
-    camera: PinholeCamera,
-    feet: Array,
-) -> Reach:
-    angles = np.linspace(0.0, 2.0 * np.pi, DIRECTIONS, endpoint=False)
-    directions = np.stack([np.cos(angles), np.sin(angles)], -1)
-    count = len(outlines)
-    place, level = np.zeros(count, int), np.zeros(count, int)
-    for number, tower in enumerate(towers):
-        place[tower], level[tower] = number, range(len(tower))
-    scale = _scales(camera, feet)[place]
-    near = -_scales(camera, feet)[place]
-    far, covered = np.zeros((count, DIRECTIONS)), np.zeros((count, DIRECTIONS), bool)
-    marked = np.full(int(segments.label_image.max(initial=0)) + 1, -1)
-    marked[[segment.label for segment in segments]] = range(count)
-    numbers = marked[segments.label_image]
-    if segments.hides is not None:
-        numbers[segments.hides & (numbers < 0)] = count
-    place, level = np.append(place, -1), np.append(level, 0)
-    near = np.append(near, -np.inf)
-    for index, (segment, points) in enumerate(zip(segments, outlines)):
-        far[index] = (points @ directions.T).max(axis=0)
-        gap = max(1, round(OUTSIDE * scale[index]))
-        for other, contacts, normal in _contacts(segment.part, numbers, index, gap):
-            # Of a tower the upper one is before the lower, seen from above; of two the nearer one.
-            if place[other] == place[index]:
-                before = level[other] > level[index]
-            else:
-                before = near[other] < near[index]
-            if before:
-                beyond = (contacts @ directions.T).max(axis=0) > far[index] - 0.3
-                covered[index] |= beyond & (directions @ normal > FACING)
-    return Reach(directions, far, covered, scale)
-
-
-def _contacts(
-    part: Mask, numbers: NDArray[np.intp], index: int, gap: int
-) -> Iterator[tuple[int, Array, Array]]:
-    """What is beside a block: its number, its pixels there, (n, 2) [px], and on which side.
-
-    Args:
-        part: of the block, shape (height, width).
-        numbers: of what every pixel is of, -1 of nothing, shape (height, width).
-        gap: how far beside it [px].
-    """
-    left, top, width, height = cv2.boundingRect(part.astype(np.uint8))
-    box = np.s_[max(0, top - gap) : top + height + gap, max(0, left - gap) : left + width + gap]
-    corner = np.array([box[1].start, box[0].start])
-    mine = part[box].astype(np.uint8)
-    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * gap + 1,) * 2)
-    around = np.where(cv2.dilate(mine, disc) > 0, numbers[box], -1)
-    rows, columns = np.nonzero(mine)
-    middle = corner + [columns.mean(), rows.mean()]
-    for other in np.unique(around):
-        if other in (-1, index):
-            continue
-        rows, columns = np.nonzero(around == other)
-        points = corner + np.stack([columns, rows], -1)
-        aside = points.mean(axis=0) - middle
-        yield int(other), points.astype(float), aside / max(float(np.hypot(*aside)), 1e-9)
 
 
 def _upper_edge(corners: Array, columns: Array) -> Array:
@@ -507,7 +375,9 @@ class _Fit:
             flat = flat[[0, 1, 2, 4, 3, 5, 6]]
             wide, deep = deep, wide
         doubt = flat @ covariance @ flat.T + 1e-9 * np.eye(7)
+        rival = "" if self.shapes[index] == BOX else BOX  # light alone tells them apart
         return BlockSurface(
             self.shapes[index], (x, y), yaw - turn * np.pi / 2, (wide, deep), low, low + high,
-            doubt, upright=misfit < MISFIT, seen_low=low, behind=bool(self.behind[index]),
+            doubt, rival=rival, upright=misfit < MISFIT, seen_low=low,
+            behind=bool(self.behind[index]),
         )  # fmt: skip
