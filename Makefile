@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock peers train-visual record eval-perception eval-photo fit-probability eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-refusals bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock peers train-visual data-masks train-masks record eval-perception eval-photo fit-probability eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-refusals bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -35,6 +35,13 @@ soak-tests: setup  ## the suite again and again, half of them on a busy machine;
 train-visual: setup  ## train the visual module G without labels; resumable
 	@$(RUN) ros2 run sim_node render_dataset --out data/states_5 --blocks 5
 	@$(RUN) ros2 run perception_node train_visual --data data/states_5 $(ARGS)
+
+data-masks: setup  ## pictures to train the masks from colour alone; resumable; ARGS=
+	@$(RUN) python benchmarks/render_masks.py $(ARGS)
+
+train-masks: setup  ## train the network that finds blocks in colour alone; resumable; ARGS=
+	@$(RUN) python benchmarks/render_masks.py
+	@$(RUN) ros2 run perception_node train_masks $(ARGS)
 
 record: setup  ## perception_node on your camera, whose pictures are kept for training; OUT= ARGS="-r camera/image_raw:=…"
 	@$(RUN) ros2 run perception_node perception_node --ros-args -p record:=$(or $(OUT),data/recorded) $(ARGS)

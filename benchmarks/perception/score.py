@@ -16,12 +16,21 @@ import numpy as np
 from numpy.typing import NDArray
 from results_file import Row, wilson_interval
 
+from perception.color_clusters import find_by_color
 from perception.damages import Shot
 from perception.hidden_truth import is_partly_right
 from perception.scenes import Drawn
 from perception.sets import PictureSet
 from perception.views import view_of
-from perception_node import MaskCentroid, Observation, Perceived, Perception, PerceptionConfig
+from perception_node import (
+    MaskCentroid,
+    Observation,
+    Perceived,
+    Perception,
+    PerceptionConfig,
+    Segmenter,
+)
+from perception_node.segment import RGB
 from perception_node.visual_module.coordinates import Locator
 from scene_graph import UNKNOWN, GraphStatus, SceneGraph, SceneObject
 from sim_node import Frame, World, random_arrangement, sense, true_scene_graph
@@ -33,6 +42,8 @@ BASELINES: Final[Mapping[str, Locator]] = {
     "mask centroid": MaskCentroid(),
     "largest part's centroid": MaskCentroid(largest_part_only=True),
 }
+#: What finds blocks in colour in place of the network.
+SEGMENTERS: Final[Mapping[str, Segmenter]] = {"clusters of colours": find_by_color}
 
 
 @dataclass(frozen=True)
@@ -83,7 +94,10 @@ def answer_of(drawn: Drawn, item: PictureSet, locator: Locator, world: World) ->
     frame = sense(exact, sensor, (drawn.seed, 0, 0))
     true_blocks = _true_blocks(world) if item.names or item.shapes else {}
     view = view_of(world.config.camera, frame)
-    observation = view.observation(frame.rgb, frame.labels, frame.depth)
+    alone = item.mask_source == RGB
+    observation = view.observation(
+        frame.rgb, None if alone else frame.labels, None if alone else frame.depth
+    )
     if item.damage is not None:
         rng = np.random.default_rng([drawn.seed, 13])
         earlier = functools.partial(_other_state, world, drawn)
@@ -110,8 +124,8 @@ def answer_to(
     seen = perception.perceive(observation)
     seconds = time.perf_counter() - start
     others = [
-        Perception(baseline, perception.config).perceive(observation).graph.relations
-        for baseline in (BASELINES.values() if item.baselines else ())
+        other.perceive(observation).graph.relations
+        for other in _baselines(item, perception).values()
     ]
     hides = seen.status is GraphStatus.HIDDEN
     confident = hides or seen.status is GraphStatus.CONFIDENT
@@ -130,6 +144,18 @@ def answer_to(
         hides=hides,
     )
     return answer, seen
+
+
+def _baselines(item: PictureSet, ours: Perception) -> dict[str, Perception]:
+    """What is compared with ours on a set, by name."""
+    if not item.baselines:
+        return {}
+    if item.mask_source == RGB:
+        return {
+            name: Perception(ours.locator, ours.config, segmenter)
+            for name, segmenter in SEGMENTERS.items()
+        }
+    return {name: Perception(locator, ours.config) for name, locator in BASELINES.items()}
 
 
 def answers_of(item: PictureSet, locator: Locator, numbers: Iterable[int]) -> Iterator[Answer]:
@@ -242,12 +268,15 @@ def _baseline_rows(item: PictureSet, answers: Sequence[Answer], ours: float) -> 
     if not item.baselines:
         return []
     n = len(answers)
-    rights = [sum(answer.baselines[index] for answer in answers) for index in range(len(BASELINES))]
+    alone = item.mask_source == RGB
+    names = tuple(SEGMENTERS if alone else BASELINES)
+    rights = [sum(answer.baselines[index] for answer in answers) for index in range(len(names))]
     best = max(rights) / n
+    above = names[0] if alone else "the better centroid"
     return [
         *(Row(item.what, f"graph right, {name}", right / n, "", n, wilson_interval(right, n))
-          for name, right in zip(BASELINES, rights)),
-        Row(item.what, "graph right, above the better centroid by", ours - best, "", n),
+          for name, right in zip(names, rights)),
+        Row(item.what, f"graph right, above {above} by", ours - best, "", n),
     ]  # fmt: skip
 
 

@@ -28,7 +28,7 @@ from perception.scenes import (
     two_rows,
 )
 from perception_node import Observation
-from perception_node.segment import RGBD, SEGMENTATION_TOPIC
+from perception_node.segment import RGB, RGBD, SEGMENTATION_TOPIC
 from scene_graph import BASIC_COLORS, COLORS
 from sim_node import ColorConfig, DepthConfig, SegmentationConfig, SensorConfig
 
@@ -73,7 +73,8 @@ class PictureSet:
         names: greatest shares of blocks that have a wrong name in a confident graph, and that have
             no name; None: not counted.
         shapes: least share of blocks with the right shape; None: not counted.
-        baselines: whether the centroids of masks stand beside the visual module.
+        baselines: whether the centroids of masks stand beside the visual module, or with masks from
+            colour alone clusters of colours beside the network.
         told: whether one picture can tell what is wrong with it.
         note: what has to be known to read the rows.
         poses: bounds on median and 99th percentile of the centre's error [mm], median of yaw's [°].
@@ -164,6 +165,16 @@ def _as_cameras_are(
     )
 
 
+def _of_color_alone(
+    name: str, what: str, draw: Callable[[int], Drawn], graph: float, **more: Any
+) -> PictureSet:
+    """Neither depth nor masks are there."""
+    return PictureSet(
+        f"rgb_{name}", f"colour alone, {what}", draw, mask_source=RGB, graph=graph, baselines=True,
+        note="poses follow from outlines, the table and the places", **more,
+    )  # fmt: skip
+
+
 def _half_hidden_without_depth(seen: Observation, shot: Shot) -> Observation:
     return no_depth(half_hidden(seen, shot), shot)
 
@@ -209,6 +220,19 @@ SETS: Final = (
         "two_rows_noisy", "two rows, 4 objects on 6 places, depth of a real camera", two_rows(4),
         1000, _REAL, graph=0.97,
     ),
+    _of_color_alone("six", "6 objects", plain(6), 0.97),
+    _of_color_alone(
+        "hard", "cubes 3-6 cm, yaw to 45°, clutter, 640x480, camera ±20°",
+        solids(shapes=("box",), edges=(0.03, 0.06), cubes=True, clutter=True, azimuth=0.349,
+               size=(640, 480)), 0.93,
+    ),
+    _of_color_alone(
+        "light", "3-7 blocks of 14 colours, any light",
+        colored(tuple(COLORS), (0.5, 1.1), (0.8, 1.2), (0.75, 1.2)), 0.93,
+    ),
+    _of_color_alone("real_camera", "6 objects, blur, noise, JPEG of quality 90, 640x480",
+                    plain(6, **_VGA), 0.97,
+                    sensor=SensorConfig(color=ColorConfig(blur=0.8, noise=2.5, jpeg_quality=90))),
     _as_cameras_are("blurred", "blurred by 1 px", color=ColorConfig(blur=1.0)),
     _as_cameras_are("jpeg", "blurred by 0.7 px, JPEG of quality 90",
                     color=ColorConfig(blur=0.7, jpeg_quality=90)),
@@ -248,6 +272,9 @@ SETS: Final = (
                mask_source=SEGMENTATION_TOPIC, damage=no_depth, shapes=0.99),
     *(_damaged(name, *entry) for name, entry in OF_PICTURES.items()),
     *(_damaged(name, *entry, SEGMENTATION_TOPIC) for name, entry in OF_LABELS.items()),
+    *(replace(_damaged(name, *OF_PICTURES[name], RGB), name=f"rgb_{name}",
+              what=f"colour alone, {OF_PICTURES[name][0]}")
+      for name in ("black", "white", "one_color", "upside_down", "half_lost")),
     PictureSet("any_number", "1 to 12 blocks", any_number, 300),
     PictureSet("outside", "blocks outside the picture", beside_the_picture, 300),
 )  # fmt: skip

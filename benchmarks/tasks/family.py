@@ -172,6 +172,12 @@ FAMILIES: Final[tuple[Family, ...]] = (
         mask_source="segmentation_topic",
     ),
     Family(
+        "color",
+        "6 blocks, a camera without depth",
+        blocks=(6, 6),
+        mask_source="rgb",
+    ),
+    Family(
         "two_rows",
         "two rows: 4 blocks on 6 places, some behind others",
         blocks=(4, 4),

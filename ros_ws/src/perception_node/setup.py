@@ -19,6 +19,7 @@ setup(
         "console_scripts": [
             "perception_node = perception_node.executable:perception_node",
             "train_visual = perception_node.executable:train_visual",
+            "train_masks = perception_node.executable:train_masks",
         ]
     },
 )

@@ -6,11 +6,19 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from fake_camera import OTHER, TOPICS, TOWERS, WITHOUT_LABELS, FakeCamera, camera_before
+from fake_camera import (
+    COLOR_ALONE,
+    OTHER,
+    TOPICS,
+    TOWERS,
+    WITHOUT_LABELS,
+    FakeCamera,
+    camera_before,
+)
 from rclpy.parameter import Parameter
 
 from perception_node.node import PerceptionNode
-from perception_node.segment import SEGMENTATION_TOPIC
+from perception_node.segment import RGB, SEGMENTATION_TOPIC
 from scene_graph import Stacks
 from sim_node.camera import Frame
 from sim_node.world import World
@@ -39,6 +47,21 @@ def perception_of_labels(ros_context: Any) -> PerceptionNode:
     return ros_context.add(
         PerceptionNode(context=ros_context.context, namespace="/cell", parameter_overrides=[source])
     )
+
+
+@pytest.fixture
+def perception_of_colors(ros_context: Any) -> PerceptionNode:
+    """One that has nothing but colour."""
+    source = Parameter("mask_source", value=RGB)
+    return ros_context.add(
+        PerceptionNode(context=ros_context.context, namespace="/cell", parameter_overrides=[source])
+    )
+
+
+@pytest.fixture
+def color_camera(ros_context: Any, perception_of_colors: PerceptionNode) -> FakeCamera:
+    """A camera without depth."""
+    return camera_before(ros_context, perception_of_colors, COLOR_ALONE)
 
 
 @pytest.fixture

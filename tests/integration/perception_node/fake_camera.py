@@ -34,6 +34,8 @@ TOPICS = {
 }
 #: What a camera publishes by itself.
 WITHOUT_LABELS = tuple(topic for topic in TOPICS if topic != LABELS)
+#: What a camera without depth publishes.
+COLOR_ALONE = ("camera/image_raw", "camera/camera_info")
 
 
 class FakeCamera:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from tamp_runtime.messages.images import array_from_image, image_from_array
 from tamp_runtime.messages.scene_graph import graph_from_message
 
 from perception_node.node import PerceptionNode
-from scene_graph import Stacks
+from scene_graph import ROW_OF_THREE, Stacks
 from sim_node.camera import Frame
 
 
@@ -39,6 +40,33 @@ def test_blocks_are_found_without_a_detector_and_nobody_listens_for_one(
     assert stacks_of(camera.calibrate_and_show(frames[TOWERS])) == TOWERS
     assert stacks_of(camera.show(frames[OTHER])) == OTHER
     assert perception.count_subscribers(LABELS) == 0
+
+
+# Colour alone
+
+
+def test_colour_alone_becomes_the_same_graph_with_poses(
+    color_camera: FakeCamera, perception_of_colors: PerceptionNode, frames: dict[Stacks, Frame]
+) -> None:
+    assert stacks_of(color_camera.calibrate_and_show(frames[TOWERS])) == TOWERS
+    message = color_camera.show(frames[OTHER])
+    assert stacks_of(message) == OTHER
+    for block in graph_from_message(message).objects:
+        assert np.allclose(block.size, 0.045, atol=0.003)
+        place = ROW_OF_THREE[1 if block.name in OTHER[1] else 2]
+        assert np.allclose(block.position_world[:2], place[:2], atol=0.02)
+    for topic in (LABELS, "camera/depth/image_raw"):
+        assert perception_of_colors.count_subscribers(topic) == 0
+
+
+def test_a_dark_picture_is_refused_and_the_next_one_understood(
+    color_camera: FakeCamera, frames: dict[Stacks, Frame]
+) -> None:
+    color_camera.calibrate_and_show(frames[TOWERS])
+    dark = color_camera.show(replace(frames[TOWERS], rgb=frames[TOWERS].rgb // 8))
+    assert dark.status == SceneGraph.BAD_IMAGE
+    assert "too dark to tell colours" in dark.message and list(dark.objects) == []
+    assert stacks_of(color_camera.show(frames[TOWERS])) == TOWERS
 
 
 # A detector

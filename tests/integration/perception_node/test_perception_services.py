@@ -102,7 +102,7 @@ def test_a_source_of_masks_that_does_not_exist_is_refused_with_those_that_do(sta
         start("perception_node", "perception_node", "--ros-args", "-p", "mask_source:=detector")
     )
     assert ended.code == 2
-    assert "mask_source is 'detector'; there are rgbd, segmentation_topic" in ended.stderr
+    assert "mask_source is 'detector'; there are rgbd, rgb, segmentation_topic" in ended.stderr
 
 
 def test_bad_weights_are_refused_with_a_sentence(start: Start, tmp_path: Path) -> None:

@@ -55,7 +55,8 @@ from .frame_pairing import FramePairing, StampedSet
 from .observation import Observation
 from .parameters import PARAMETERS, config_from_parameters
 from .pipeline import Perceived, Perception
-from .segment import SEGMENTATION_TOPIC
+from .segment import RGB, RGBD, SEGMENTATION_TOPIC
+from .segment.rgb import network
 from .training.recording import Recorder
 from .visual_module.weights import DEFAULT_WEIGHTS, load_weights
 
@@ -65,12 +66,18 @@ READERS: Final[dict[str, Callable[[Image], Any]]] = {
     "depth": depth_from_image,
     "segmentation": labels_from_image,
 }
-#: The messages that make a frame; labels only where masks are given.
+#: The messages that make a frame; labels only where masks are given, depth where it is used.
 TOPICS: Final = {
     "image": "camera/image_raw",
     "depth": "camera/depth/image_raw",
     "segmentation": "camera/segmentation",
     "info": "camera/camera_info",
+}
+#: Those of them that are not heard, by mask_source.
+UNUSED: Final = {
+    RGBD: ("segmentation",),
+    SEGMENTATION_TOPIC: (),
+    RGB: ("segmentation", "depth"),
 }
 #: After this long without a complete frame, though images arrive, the reason is published [s].
 SILENCE: Final = 2.0
@@ -84,8 +91,8 @@ class PerceptionNode(Node):
     Subscribes:
         camera/image_raw, camera/depth/image_raw (sensor_msgs/Image), camera/camera_info
             (sensor_msgs/CameraInfo) and, where the parameter mask_source says so,
-            camera/segmentation (sensor_msgs/Image): paired by their stamps; only the newest
-            complete frame is interpreted
+            camera/segmentation (sensor_msgs/Image), or no depth: paired by their stamps; only the
+            newest complete frame is interpreted
         camera/extrinsics (geometry_msgs/TransformStamped), latched or sent again and again; these
             and the images are heard reliable or best effort, as they are published
         /tf_static (tf2_msgs/TFMessage), where there are such messages: leads to the camera's frame
@@ -111,10 +118,10 @@ class PerceptionNode(Node):
         weights = Path(self._values["weights"] or DEFAULT_WEIGHTS)
         module = load_weights(weights)
         self._perception = Perception(module, config_from_parameters(self._values))
-        given = self._values["mask_source"] == SEGMENTATION_TOPIC
-        self._topics = {
-            stream: topic for stream, topic in TOPICS.items() if given or stream != "segmentation"
-        }
+        if self._values["mask_source"] == RGB:
+            network()  # raises if its weights cannot be read: now, not at the first picture
+        unused = UNUSED[self._values["mask_source"]]
+        self._topics = {name: topic for name, topic in TOPICS.items() if name not in unused}
         tolerance = round(1e9 * self._values["pairing_tolerance"])
         self._pairing = FramePairing(tuple(self._topics), tolerance)
         self._lens: LensModel | None = None

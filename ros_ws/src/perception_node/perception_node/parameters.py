@@ -43,7 +43,7 @@ def _positions_problem(values: Any) -> str:
 
 
 def _mask_source_problem(value: Any) -> str:
-    """One of rgbd, segmentation_topic."""
+    """One of rgbd, rgb, segmentation_topic."""
     if value in SEGMENTERS:
         return ""
     return f"mask_source is {value!r}; there are {', '.join(SEGMENTERS)}"
@@ -59,8 +59,9 @@ PARAMETERS: Final = (
     ParameterSpec(
         "mask_source",
         _DEFAULT.mask_source,
-        "where the blocks' pixels come from: rgbd (found in colour and depth) or "
-        "segmentation_topic (camera/segmentation, of a detector of your own)",
+        "where the blocks' pixels come from: rgbd (found in colour and depth), rgb (found in "
+        "colour alone, no depth is heard) or segmentation_topic (camera/segmentation, of a "
+        "detector of your own)",
         read_only=True,
         check=_mask_source_problem,
     ),
@@ -172,7 +173,7 @@ PARAMETERS: Final = (
         "max_doubt",
         _DEFAULT.limits.doubt,
         "standard deviation with which a block's centre may be known in a graph that may be "
-        "planned on [m]",
+        "planned on; three times as much where it follows from colour alone [m]",
         minimum=0.0005,
         maximum=0.1,
     ),

@@ -25,6 +25,7 @@ from .places.occlusion import find_occlusion
 from .places.table import table_problem
 from .probability import evidence, load_parameters, probability
 from .segment import (
+    RGB,
     SEGMENTERS,
     Segmenter,
     Segments,
@@ -125,7 +126,8 @@ class Perception:
         fallen = find_fallen(observation.rgb, seen.segments, seen.surfaces, coordinates)
         if fallen:
             occlusion = find_occlusion(observation, segments, places, config)
-            verdict = judge_fallen(fallen[0], occlusion, config)
+            by_depth = observation.depth is not None
+            verdict = judge_fallen(fallen[0], occlusion, config, by_depth)
             if len(fallen) == len(seen.segments):
                 return refused(verdict)
             # What is known of the others is told all the same; what has fallen may hide some.
@@ -165,7 +167,11 @@ class Perception:
         """The blocks measured; of two rows without those that are mostly covered."""
         if isinstance(places, TwoRows) and observation.depth is not None:
             return measure_seen(observation, segments, places.places)
-        return Seen(segments, measure(observation, segments))
+        if isinstance(places, TwoRows) and segments.hides is not None:
+            raise BadImageError(
+                "the places lie in two rows, which only depth tells apart; set mask_source to rgbd"
+            )
+        return Seen(segments, measure(observation, segments, places.places))
 
     def _aligned(self, observation: Observation) -> Observation:
         """With edges where they are, where the places are seen and depth can be moved to colour."""
@@ -176,7 +182,8 @@ class Perception:
 
     def _segments(self, observation: Observation) -> Segments:
         segmenter = self.segmenter or SEGMENTERS[self.config.mask_source]
-        if observation.depth is None and self.segmenter is None:
+        alone = self.config.mask_source == RGB and observation.labels is None
+        if observation.depth is None and self.segmenter is None and not alone:
             segmenter = given_labels  # a goal image, drawn by hand
         segments = segmenter(observation, self._volume)
         if segments.label_image.shape != observation.rgb.shape[:2]:

@@ -39,20 +39,25 @@ def sight_problem(
 ) -> str:
     """A sentence about the first place, or block, that is not wholly in the picture; or nothing.
 
-    Nothing is said without depth, camera or places.
+    Nothing is said without camera or places, or of masks that came without depth.
     """
     depth, camera = observation.depth, observation.camera
-    if depth is None or camera is None or not places.places:
+    if camera is None or not places.places or (depth is None and segments.hides is None):
         return ""
-    with np.errstate(invalid="ignore"):
-        known = (depth > 0.0) & np.isfinite(depth)
+    known = np.zeros(segments.label_image.shape, bool)
+    if depth is not None:
+        with np.errstate(invalid="ignore"):
+            known = (depth > 0.0) & np.isfinite(depth)
     shown = known | (segments.label_image > 0)
     black = ~shown & (observation.rgb.max(axis=2) <= BLACK)
     for place in places.places:
         name = base_name(place.index)
         if not _inside(camera, _box(place, 0.0, FOOT)):
             return f"{name} is not in the picture; turn the camera, or correct its calibration"
-        if _share(~shown, box_region(camera, _box(place, 0.0, FOOT))) > MAX_UNKNOWN:
+        if (
+            depth is not None
+            and _share(~shown, box_region(camera, _box(place, 0.0, FOOT))) > MAX_UNKNOWN
+        ):
             return (
                 f"whether anything stands on {name} is not known, as there is no depth; check the "
                 "depth camera, and that nothing is before it"
@@ -60,12 +65,13 @@ def sight_problem(
         width = 2.0 * config.column_half_width
         column = _box(place, 0.0, (width, width, config.column_height))
         if _share(black, box_region(camera, column)) > MAX_BLACK:
+            bare = "" if depth is None else " and has no depth"
             return (
-                f"part of what is over {name} is black and has no depth; is the lens partly "
-                "covered, or part of the picture lost?"
+                f"part of what is over {name} is black{bare}; is the lens partly covered, or part "
+                "of the picture lost?"
             )
         labelled = segments.label_image > 0
-        if _is_higher(place, known, labelled, observation, camera, config):
+        if depth is not None and _is_higher(place, known, labelled, observation, camera, config):
             return (
                 f"what stands on {name} is higher than {config.column_height:g} m; set "
                 "column_height to the height of the highest tower"

@@ -25,6 +25,11 @@ from .places.occlusion import Occlusion
 #: Noise of colours from which on it may be why a graph is refused [0..255].
 GRAIN: Final = 8.0
 
+#: Centres that follow from outlines alone may be so many times less certain than measured ones.
+BY_OUTLINE: Final = 3.0
+#: What is so many times as high as wide may be two blocks, where no depth shows that it is not.
+TALL: Final = 1.5
+
 _TIDY_UP: Final = "look again, or tidy up by hand"
 
 
@@ -58,6 +63,15 @@ def judge(
     if names.doubt:
         return Verdict(GraphStatus.LOW_CONFIDENCE, names.doubt)
     if sentence := unclear_shape(blocks, names.names):
+        return Verdict(GraphStatus.LOW_CONFIDENCE, sentence)
+    if blocks.behind:
+        return Verdict(
+            GraphStatus.LOW_CONFIDENCE,
+            f"{names.names[blocks.behind[0]]} may stand behind the block below it, rather than on "
+            "it: in colour alone that looks the same; look from higher up, or set mask_source to "
+            "rgbd",
+        )
+    if sentence := two_in_one(blocks, names.names):
         return Verdict(GraphStatus.LOW_CONFIDENCE, sentence)
     if sentence := doubtful(blocks, names.names, config.limits):
         return Verdict(GraphStatus.LOW_CONFIDENCE, sentence)
@@ -100,10 +114,22 @@ def judge_empty(occlusion: Occlusion, config: PerceptionConfig) -> Verdict:
     )
 
 
-def judge_fallen(block: FallenBlock, occlusion: Occlusion, config: PerceptionConfig) -> Verdict:
-    """The verdict on a picture with a block that could not be measured as one that is upright."""
+def judge_fallen(
+    block: FallenBlock, occlusion: Occlusion, config: PerceptionConfig, by_depth: bool = True
+) -> Verdict:
+    """The verdict on a picture with a block that could not be measured as one that is upright.
+
+    Args:
+        by_depth: whether it was measured by depth, or else by its outline.
+    """
     if hidden := occluded(occlusion, config.max_hidden):
         return Verdict(GraphStatus.OCCLUDED, hidden)
+    if not by_depth:
+        return Verdict(
+            GraphStatus.UNSTABLE,
+            f"the outline of the {block.color} block is not that of a block that stands upright on "
+            "the table or on another one; put it upright, or take away what looks like it",
+        )
     return Verdict(
         GraphStatus.UNSTABLE,
         f"the {block.color} block lies on its side or leans: no upright face of it is seen; put "
@@ -168,14 +194,27 @@ def instability(
 def doubtful(blocks: Blocks, names: tuple[str, ...], limits: StabilityLimits) -> str:
     """A sentence about the block whose centre is known worst, or an empty string."""
     deviations = [max(block.deviation[:2]) for block in blocks.measured]
-    if not deviations or max(deviations) <= limits.doubt:
+    most = limits.doubt * (BY_OUTLINE if blocks.by_outline else 1.0)
+    if not deviations or max(deviations) <= most:
         return ""
     worst = int(np.argmax(deviations))
     return (
         f"how far {names[worst]} reaches back is not seen: its centre is known to "
-        f"{1000 * deviations[worst]:.1f} mm only (required: {1000 * limits.doubt:.1f} mm); look "
+        f"{1000 * deviations[worst]:.1f} mm only (required: {1000 * most:.1f} mm); look "
         "from another side or from higher up"
     )
+
+
+def two_in_one(blocks: Blocks, names: tuple[str, ...]) -> str:
+    """A sentence about the first block that may be two in one outline, or an empty string."""
+    for block, name in zip(blocks.measured, names):
+        wide, deep, high = block.pose.size
+        if blocks.by_outline and high > TALL * max(wide, deep):
+            return (
+                f"{name} is {high / max(wide, deep):.1f} times as high as wide: in colour alone it "
+                "may be two blocks; set mask_source to rgbd, or take it away"
+            )
+    return ""
 
 
 def unclear_shape(blocks: Blocks, names: tuple[str, ...]) -> str:

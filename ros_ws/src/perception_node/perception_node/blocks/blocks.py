@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,11 +13,12 @@ from perception_node.noise import depth_noise
 from perception_node.observation import Observation
 from perception_node.places import Standing
 from perception_node.segment import Segments
-from scene_graph import BlockPose
+from scene_graph import BlockPose, Place
 
 from .measure import BlockSurface, measure_blocks
 from .outline import shape_from_outline
 from .pose import MeasuredBlock, pose_blocks
+from .silhouette import measure_silhouettes
 
 
 @dataclass(frozen=True)
@@ -26,11 +27,15 @@ class Blocks:
 
     Attributes:
         shapes: ``box``, ``cylinder`` or ``sphere`` for each.
-        measured: all of them, or none where depth or camera are missing.
+        measured: all of them, or none where camera, or depth of masks that were given, are missing.
+        by_outline: whether they were measured by their outlines, not by depth.
+        behind: indices of those that may be behind the block below them rather than on it.
     """
 
     shapes: tuple[str, ...]
     measured: tuple[MeasuredBlock, ...] = ()
+    by_outline: bool = False
+    behind: tuple[int, ...] = ()
 
     @property
     def poses(self) -> tuple[BlockPose | None, ...]:
@@ -40,15 +45,28 @@ class Blocks:
         return (None,) * len(self.shapes)
 
 
-def measure(observation: Observation, segments: Segments) -> tuple[BlockSurface, ...]:
-    """Each block by itself, in the order of the segments; nothing without depth or camera.
+def measure(
+    observation: Observation, segments: Segments, places: Sequence[Place] = ()
+) -> tuple[BlockSurface, ...]:
+    """Each block by its depth, or all by their outlines where these were found in colour alone.
+
+    Args:
+        places: on which they stand.
+
+    Returns:
+        In the order of the segments; nothing without camera, or of masks that came without depth.
 
     Raises:
-        BadImageError: if too little depth of a block is known.
+        BadImageError: if too little depth of a block is known, or one stands on no place.
     """
     depth, camera = observation.depth, observation.camera
-    if depth is None or camera is None:
+    if camera is None:
         return ()
+    if depth is None:
+        if segments.hides is None or not places:
+            return ()
+        feet = np.array([place.position_world for place in places])
+        return measure_silhouettes(observation.rgb, segments, camera, feet)
     return measure_blocks(
         segments, depth, camera, depth_noise(depth), observation.sure, observation.edge_doubt
     )
@@ -78,4 +96,6 @@ def find_blocks(
         shapes = tuple(shape_from_outline(observation.rgb, segment.part) for segment in segments)
         return Blocks(shapes)
     measured = pose_blocks(surfaces, standing.stacks, standing.table_heights, covered, smallest)
-    return Blocks(tuple(block.shape for block in measured), measured)
+    shapes = tuple(block.shape for block in measured)
+    behind = tuple(index for index, item in enumerate(surfaces) if item.behind)
+    return Blocks(shapes, measured, by_outline=observation.depth is None, behind=behind)

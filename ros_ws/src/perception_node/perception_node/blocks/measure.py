@@ -65,6 +65,7 @@ class BlockSurface:
         upright: whether it is a block that stands upright; else nothing but about where it is can
             be relied on.
         seen_low: z of about the lowest of its points that are seen [m].
+        behind: whether it is rather seen behind the block below it than on it; by outlines only.
     """
 
     shape: str
@@ -78,6 +79,7 @@ class BlockSurface:
     rival: str = ""
     upright: bool = True
     seen_low: float = 0.0
+    behind: bool = False
 
 
 def measure_blocks(

@@ -139,16 +139,21 @@ def find_occlusion(
     config: PerceptionConfig,
     blocks: Sequence[BlockPose | None] = (),
 ) -> Occlusion:
-    """What hides the columns over the places; nothing is known without depth, camera or places.
+    """What hides the columns over the places, by depth, or by what the segmenter says of colour.
+
+    Nothing is known without camera or places.
 
     Args:
         blocks: those that were measured: what lies on their surface is they, whoever missed it.
     """
     depth, camera = observation.depth, observation.camera
-    if depth is None or camera is None or not places.places:
+    if camera is None or not places.places or (depth is None and segments.hides is None):
         return Occlusion()
     columns = Columns(places, config.column_half_width, config.column_height)
     regions = columns.regions(camera)
+    if depth is None:
+        assert segments.hides is not None
+        return _occlusion(segments.hides, columns, regions, camera)
     # What is deeper than every column is behind them: most of the image, without any geometry.
     with np.errstate(invalid="ignore"):
         near = (depth > 0) & (depth < columns.greatest_depth(camera))
@@ -162,6 +167,12 @@ def find_occlusion(
         if block is not None:
             hides &= ~_is_of(block, points)
     hidden[rows[hides], across[hides]] = True
+    return _occlusion(hidden, columns, regions, camera)
+
+
+def _occlusion(
+    hidden: Mask, columns: Columns, regions: Sequence[Mask], camera: PinholeCamera
+) -> Occlusion:
     shares = tuple(_share(hidden, region) for region in regions)
     return Occlusion(hidden, shares, tuple(columns.seen_to(hidden, regions, camera)))
 

@@ -11,19 +11,23 @@ from typing import Final
 
 from .checks import check_segments
 from .labels import given_labels
+from .rgb import find_in_rgb
 from .rgbd import find_in_rgbd
 from .segments import Segment, Segmenter, Segments, largest_part
 from .volume import Volume
 
 #: Names of the segmenters of this package, as the parameter ``mask_source`` has them.
 RGBD: Final = "rgbd"
+RGB: Final = "rgb"
 SEGMENTATION_TOPIC: Final = "segmentation_topic"
 SEGMENTERS: Final[Mapping[str, Segmenter]] = {
     RGBD: find_in_rgbd,
+    RGB: find_in_rgb,
     SEGMENTATION_TOPIC: given_labels,
 }
 
 __all__ = [
+    "RGB",
     "RGBD",
     "SEGMENTATION_TOPIC",
     "SEGMENTERS",

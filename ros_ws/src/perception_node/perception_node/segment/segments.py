@@ -32,11 +32,14 @@ class Segment:
         mask: all pixels with that label, shape (height, width).
         part: those of its largest connected part, without detached specks, shape (height, width);
             the same array where there is nothing to leave out.
+        outline: points around the part, exact to parts of a pixel, shape (n, 2) [px]; None where
+            nothing more exact is known than its pixels.
     """
 
     label: int
     mask: Mask
     part: Mask
+    outline: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True)
@@ -47,15 +50,21 @@ class Segments:
         label_image: the label of every pixel, also of specks; 0 = none, shape (height, width).
         blocks: those larger than a speck, labels ascending.
         source: what to check where they are wrong.
+        hides: what is no block and hides the places, as far as colour tells, shape (height,
+            width); None where the segmenter does not tell.
     """
 
     label_image: NDArray[np.integer]
     blocks: tuple[Segment, ...]
     source: str = "camera/segmentation"
+    hides: Mask | None = None
 
     @classmethod
     def from_labels(
-        cls, label_image: NDArray[np.integer], source: str = "camera/segmentation"
+        cls,
+        label_image: NDArray[np.integer],
+        source: str = "camera/segmentation",
+        hides: Mask | None = None,
     ) -> Segments:
         """The segments of an image of non-negative labels, shape (height, width)."""
         counts = np.bincount(label_image.ravel())
@@ -64,7 +73,7 @@ class Segments:
         for label in np.flatnonzero(counts >= max(1.0, MIN_AREA * label_image.size)):
             mask = label_image == label
             blocks.append(Segment(int(label), mask, largest_part(mask)))
-        return cls(label_image, tuple(blocks), source)
+        return cls(label_image, tuple(blocks), source, hides)
 
     def __len__(self) -> int:
         return len(self.blocks)
@@ -80,7 +89,7 @@ class Segments:
         for index in left_out:
             labels[self.blocks[index].mask] = 0
         kept = tuple(item for index, item in enumerate(self.blocks) if index not in left_out)
-        return Segments(labels, kept, self.source)
+        return Segments(labels, kept, self.source, self.hides)
 
     def union(self) -> Mask:
         """Pixels of the largest part of any block, shape (height, width)."""

@@ -9,11 +9,8 @@ from __future__ import annotations
 
 import argparse
 import shutil
-import signal
-import subprocess
 import sys
 from dataclasses import asdict, fields
-from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +21,7 @@ from perception_node.errors import PerceptionError
 from perception_node.visual_module.coordinate_regressor import BACKBONES
 from perception_node.visual_module.weights import DEFAULT_WEIGHTS, save_weights
 
+from .command import how_trained, train_to_the_end
 from .dataset import read_crops, shard_paths
 from .trainer import Trainer, TrainingConfig, bfloat16_helps
 
@@ -43,11 +41,12 @@ def main(arguments: list[str] | None = None) -> int:
         return 2
     except KeyboardInterrupt:
         return 130
-    if not _train(trainer, checkpoint):
+    if not train_to_the_end(trainer, checkpoint):
         print(f"stopped at step {trainer.step}; the same command goes on from there")
         return 130
     path = options.run / WEIGHTS
-    save_weights(trainer.module, path, _metadata(options, trainer))
+    command = f"ros2 run perception_node train_visual --data {options.data}"
+    save_weights(trainer.module, path, how_trained(command, asdict(trainer.config), trainer))
     print(f"{path} written after {trainer.seconds:.0f} s of training")
     if options.install:
         shutil.copyfile(path, DEFAULT_WEIGHTS)
@@ -70,29 +69,6 @@ def _trainer(options: argparse.Namespace, checkpoint: Path) -> Trainer:
         trainer.resume(checkpoint)
         print(f"going on from step {trainer.step} of {config.steps} ({checkpoint})")
     return trainer
-
-
-def _train(trainer: Trainer, checkpoint: Path) -> bool:
-    """Trains with a progress bar; whether all steps are done. Ctrl-C ends it after a whole step."""
-    average, stopped = 0.0, False
-
-    def stop(_signal: int, _frame: object) -> None:
-        nonlocal stopped
-        stopped = True
-
-    def show(step: int, loss: float) -> bool:
-        nonlocal average
-        average = loss if average == 0.0 else 0.98 * average + 0.02 * loss
-        progress.update(step - progress.n)
-        progress.set_postfix(loss=f"{average:.4f}", refresh=False)
-        return not stopped
-
-    previous = signal.signal(signal.SIGINT, stop)
-    try:
-        with tqdm(total=trainer.config.steps, initial=trainer.step, unit="step") as progress:
-            return trainer.run(show, checkpoint)
-    finally:
-        signal.signal(signal.SIGINT, previous)
 
 
 def _parse(arguments: list[str] | None) -> argparse.Namespace:
@@ -119,31 +95,6 @@ def _parse(arguments: list[str] | None) -> argparse.Namespace:
                 flag, type=type(default), default=default, choices=choices, help=field.name
             )
     return parser.parse_args(arguments)
-
-
-def _metadata(options: argparse.Namespace, trainer: Trainer) -> dict[str, str]:
-    """How the weights came about, for the file's header."""
-    settings = []
-    for name, value in asdict(trainer.config).items():
-        flag = name.replace("_", "-")
-        if isinstance(value, bool):
-            settings.append(f"--{flag}" if value else f"--no-{flag}")
-        else:
-            settings.append(f"--{flag} {value}")
-    command = f"ros2 run perception_node train_visual --data {options.data} {' '.join(settings)}"
-    try:
-        commit = subprocess.run(
-            ["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=True
-        ).stdout.strip()
-    except (OSError, subprocess.CalledProcessError):
-        commit = "unknown"
-    return {
-        "command": command,
-        "commit": commit,
-        "date": date.today().isoformat(),
-        "training_seconds": f"{trainer.seconds:.0f}",
-        "torch": str(torch.__version__),
-    }
 
 
 if __name__ == "__main__":

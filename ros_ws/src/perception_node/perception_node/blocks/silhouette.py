@@ -1,0 +1,383 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Poses and sizes of blocks from their outlines alone, where no depth is known.
+
+What a picture of one camera leaves open is told by what is known of the scene: the lowest block of
+a tower stands on the table, each other one on the one below it, upright, and about on a place. The
+outline of a convex body is given by how far it reaches in every direction of the picture,
+
+    s(n) = max over its corners c of n · project(c),
+
+so all blocks of a picture are fitted at once, by Gauss-Newton, to how far their masks reach. Where
+something else covers an edge, the block reaches at least as far.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from perception_node.camera import PinholeCamera
+from perception_node.segment import Segments
+from scene_graph import BOX, CYLINDER, SPHERE
+
+from .measure import BlockSurface
+from .outline import shape_from_outline
+from .reach import DIRECTIONS, Reach, points_around, reach_of, towers_over
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+#: Standard deviation of where an outline is, at the block [m], and so many times as much for what
+#: neighbouring directions have in common.
+OUTLINE: Final = 0.001
+COMMON: Final = 1.7
+#: What is known beforehand, as standard deviations: where a block stands on its place or on the one
+#: below it, its yaw, its widths and how much they and its height differ [m, rad].
+ON_PLACE: Final = 0.012
+ON_BLOCK: Final = 0.008
+YAW: Final = 0.5
+WIDTH: Final = 0.03
+SQUARE: Final = 0.005
+CUBE: Final = 0.02
+#: How equal the edges of cubes are, and outlines that all differ by no more than this from those of
+#: cubes, as a root mean square, are theirs [m].
+EQUAL: Final = 0.0005
+CUBES_FIT: Final = 0.0016
+#: Those of other boxes have to be nearer by this.
+BETTER: Final = 0.7
+#: Yaws at which the fit begins [rad].
+YAWS: Final = np.radians(np.arange(-45.0, 45.0, 7.5))
+STEPS: Final = 7
+#: An outline that differs by more than this as a root mean square is of no upright block [m].
+MISFIT: Final = 0.0035
+#: What stands on a block hides of its top about as much as it is wide, less where it stands further
+#: back: at least this part; for a camera that looks down on it by this tangent or more.
+HIDES: Final = 0.66
+LEAST_STEEP: Final = 0.08
+#: Sizes that blocks can have [m].
+SMALLEST: Final = 0.012
+LARGEST: Final = 0.14
+
+_X, _Y, _YAW, _WIDE, _DEEP, _HIGH, _LOW = range(7)
+#: By so much parameters are changed to see what that does [m, rad].
+_CHANGE: Final = np.array([1e-4, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4, 1e-4])
+
+
+def _unit(shape: str) -> Array:
+    """Corners of a body of unit size about its middle, shape (n, 3)."""
+    turns = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
+    if shape == BOX:
+        return np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    if shape == CYLINDER:
+        ring = 0.5 * np.stack([np.cos(turns), np.sin(turns)], -1)
+        return np.concatenate([np.column_stack([ring, np.full(16, z)]) for z in (-0.5, 0.5)])
+    heights = np.linspace(-0.5, 0.5, 9)
+    return np.concatenate(
+        [
+            np.column_stack(
+                [
+                    np.sqrt(0.25 - z**2) * np.cos(turns),
+                    np.sqrt(0.25 - z**2) * np.sin(turns),
+                    np.full(16, z),
+                ]
+            )
+            for z in heights
+        ]
+    )
+
+
+_UNITS: Final = {shape: _unit(shape) for shape in (BOX, CYLINDER, SPHERE)}
+
+
+def measure_silhouettes(
+    rgb: NDArray[np.uint8], segments: Segments, camera: PinholeCamera, feet: Array
+) -> tuple[BlockSurface, ...]:
+    """What outlines say about each block, in the order of the segments.
+
+    Args:
+        rgb: shape (height, width, 3).
+        feet: of the places, at least one, shape (m, 3) [m].
+
+    Raises:
+        BadImageError: if a block is not over a place; the sentence names its label.
+    """
+    outlines = [points_around(segment.part, segment.outline) for segment in segments]
+    towers = towers_over(outlines, camera, feet)
+    reach = reach_of(segments, outlines, towers, camera, feet)
+    shapes = [_shape(rgb, segment.part) for segment in segments]
+    return _Fit(towers, shapes, reach, outlines, camera, feet).surfaces()
+
+
+def _shape(rgb: NDArray[np.uint8], part: Mask) -> str:
+    left, top, width, height = cv2.boundingRect(part.astype(np.uint8))
+    box = np.s_[max(0, top - 1) : top + height + 1, max(0, left - 1) : left + width + 1]
+    return shape_from_outline(rgb[box], part[box])
+
+
+def _upper_edge(corners: Array, columns: Array) -> Array:
+    """The row of a convex outline's upper boundary at columns, NaN beside it, (n, 2) and (k,)."""
+    hull = cv2.convexHull(corners.astype(np.float32))[:, 0].astype(np.float64)
+    rows = np.full((len(hull), len(columns)), np.nan)
+    for index, (begin, end) in enumerate(zip(hull, np.roll(hull, -1, axis=0))):
+        if begin[0] > end[0]:
+            begin, end = end, begin
+        within = (columns >= begin[0]) & (columns <= end[0]) & (end[0] > begin[0])
+        share = (columns[within] - begin[0]) / (end[0] - begin[0])
+        rows[index, within] = begin[1] + share * (end[1] - begin[1])
+    rows = np.where(np.isnan(rows), np.inf, rows).min(axis=0)
+    return np.where(np.isinf(rows), np.nan, rows)
+
+
+class _Fit:
+    """All blocks of a picture, fitted at once."""
+
+    def __init__(
+        self,
+        towers: Sequence[Sequence[int]],
+        shapes: Sequence[str],
+        reach: Reach,
+        outlines: Sequence[Array],
+        camera: PinholeCamera,
+        feet: Array,
+    ) -> None:
+        self.towers, self.shapes, self.reach = towers, shapes, reach
+        self.outlines = outlines
+        self.behind = np.zeros(len(shapes), bool)
+        self.camera, self.feet = camera, feet
+        self.count = len(shapes)
+        units = [_UNITS[shape] for shape in shapes]
+        most = max(map(len, units))
+        # Bodies with fewer corners have their last one several times.
+        self.units = np.stack(
+            [np.pad(unit, ((0, most - len(unit)), (0, 0)), mode="edge") for unit in units]
+        )
+        self.below = np.full(self.count, -1)
+        self.foot = np.zeros((self.count, 3))
+        for foot, tower in zip(feet, towers):
+            self.foot[tower] = foot
+            self.below[tower[1:]] = tower[:-1]
+        self.order = [index for tower in towers for index in tower]
+        # z of a block's lower end is the sum of the heights below it.
+        self.under = np.zeros((self.count, self.count))
+        for tower in towers:
+            for level, index in enumerate(tower):
+                self.under[index, list(tower[:level])] = 1.0
+
+    def surfaces(self) -> tuple[BlockSurface, ...]:
+        """What was found, in the order of the segments."""
+        start = self._start()
+        fits = [self._fitted(start, EQUAL, EQUAL, alike=True)]
+        if fits[0][2].max() > CUBES_FIT:
+            start = self._turned(start)
+            fits.append(self._fitted(start, EQUAL, EQUAL))
+        if fits[-1][2].max() > CUBES_FIT:
+            others = self._fitted(start, SQUARE, CUBE)
+            if others[2].max() < BETTER * fits[-1][2].max():
+                fits.append(others)
+        values, covariance, misfit = fits[-1]
+        self._mark_behind(values)
+        return tuple(
+            self._surface(index, values, covariance, float(misfit[index]))
+            for index in range(self.count)
+        )
+
+    def _turned(self, start: Array) -> Array:
+        """Where the fit of cubes ends that began at the best of several yaws, for each block.
+
+        One that is turned by an eighth and smaller looks nearly the same.
+        """
+        ends, misfits = [], []
+        for yaw in (None, 0.0, 0.25 * np.pi):
+            turned = start.copy()
+            if yaw is not None:
+                turned[[shape == BOX for shape in self.shapes], _YAW] = yaw
+            values, _, misfit = self._fitted(turned, EQUAL, EQUAL)
+            ends.append(values)
+            misfits.append(misfit)
+        best = np.array(misfits).argmin(axis=0)
+        return np.asarray(np.array(ends)[best, np.arange(self.count)])
+
+    def _mark_behind(self, values: Array) -> None:
+        """Marks what does not hide the top of the block below it as far as what stands there does.
+
+        What stands on a block hides its top from the front edge of its own lower end to the back;
+        what is behind it ends where that top does.
+        """
+        full = self._with_low(values)
+        for upper, lower in enumerate(self.below):
+            if lower < 0:
+                continue
+            size = values[lower, _WIDE:_LOW]
+            corners = _UNITS[self.shapes[lower]] * size
+            corners = corners[corners[:, 2] > 0.0]
+            c, s = np.cos(values[lower, _YAW]), np.sin(values[lower, _YAW])
+            turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+            height = full[lower, _LOW] + 0.5 * size[2]
+            top = corners @ turn + [*values[lower, :2], height]
+            edge = self.camera.project(top)
+            points = self.outlines[upper]
+            left, right = np.quantile(points[:, 0], [0.3, 0.7])
+            middle = (points[:, 0] >= left) & (points[:, 0] <= right)
+            ends = points[middle & (points[:, 1] > np.median(points[:, 1]))]
+            # The upper boundary of the top is that of its convex outline.
+            back = _upper_edge(edge, ends[:, 0])
+            inside = np.isfinite(back)
+            off = self.camera.position_world - top.mean(axis=0)
+            steep = float(off[2] / np.hypot(*off[:2]))
+            if not inside.any() or steep < LEAST_STEEP:
+                continue
+            hides = float(np.median(ends[inside, 1] - back[inside])) / self.reach.scale[upper]
+            self.behind[upper] = hides < HIDES * steep * values[upper, _WIDE]
+
+    def _fitted(
+        self, values: Array, square: float, cube: float, alike: bool = False
+    ) -> tuple[Array, Array, Array]:
+        """Parameters, their covariance, and by how much outlines differ [m].
+
+        Args:
+            values: where the fit begins.
+            square, cube: by how much the widths, and the height and a width, of a box differ.
+            alike: whether all blocks have one width.
+        """
+        for _ in range(STEPS):
+            off, matrix, weights = self._linear(values, square, cube, alike)
+            normal = matrix.T @ (weights[:, None] * matrix)
+            step = np.linalg.solve(normal, -matrix.T @ (weights * off)).reshape(self.count, 6)
+            limit = np.array([0.02, 0.02, 0.25, 0.02, 0.02, 0.02])
+            values = values + np.clip(step, -limit, limit)
+            values[:, _WIDE:_LOW] = np.clip(values[:, _WIDE:_LOW], SMALLEST, LARGEST)
+        off, matrix, weights = self._linear(values, square, cube, alike)
+        covariance = np.linalg.inv(matrix.T @ (weights[:, None] * matrix))
+        squares = (self._off(values) ** 2).mean(axis=1)
+        return values, np.asarray(covariance, np.float64), np.sqrt(squares) / self.reach.scale
+
+    def _start(self) -> Array:
+        """x, y, yaw, widths and height of each block, shape (N, 6)."""
+        values = np.zeros((self.count, 6))
+        values[:, :2] = self.foot[:, :2]
+        # Directions 0 and half of them are right and left, those between down and up.
+        far, quarter = self.reach.far, DIRECTIONS // 4
+        across = (far[:, 0] + far[:, 2 * quarter]) / self.reach.scale
+        values[:, _WIDE] = values[:, _DEEP] = values[:, _HIGH] = np.clip(
+            across / 1.15, SMALLEST, LARGEST
+        )
+        costs = []
+        for yaw in YAWS:
+            turned = values.copy()
+            turned[:, _YAW] = yaw
+            width = across / (abs(np.cos(yaw)) + abs(np.sin(yaw)))
+            turned[:, _WIDE:_LOW] = np.clip(width, SMALLEST, LARGEST)[:, None]
+            # In the picture the outline is where it is: only its form tells the yaw.
+            off = self._off(turned)
+            form = off - off @ self.reach.directions @ self.reach.directions.T * (2.0 / DIRECTIONS)
+            costs.append((form**2).sum(axis=1))
+        best = np.array(costs).argmin(axis=0)
+        values[:, _YAW] = YAWS[best]
+        width = across / (np.abs(np.cos(values[:, _YAW])) + np.abs(np.sin(values[:, _YAW])))
+        values[:, _WIDE:_LOW] = np.clip(width, SMALLEST, LARGEST)[:, None]
+        round_ones = [index for index, shape in enumerate(self.shapes) if shape != BOX]
+        values[round_ones, _YAW] = 0.0
+        return values
+
+    def _with_low(self, values: Array) -> Array:
+        """The parameters and z of the lower end, shape (N, 7)."""
+        low = self.foot[:, 2] + self.under @ values[:, _HIGH]
+        return np.column_stack([values, low])
+
+    def _seen(self, values: Array) -> Array:
+        """How far blocks reach in each direction, (..., N, 7) -> (..., N, K) [px]."""
+        c, s = np.cos(values[..., _YAW]), np.sin(values[..., _YAW])
+        size = values[..., None, _WIDE:_LOW]
+        own = self.units * size
+        x = c[..., None] * own[..., 0] - s[..., None] * own[..., 1] + values[..., _X, None]
+        y = s[..., None] * own[..., 0] + c[..., None] * own[..., 1] + values[..., _Y, None]
+        z = own[..., 2] + (values[..., _LOW] + 0.5 * values[..., _HIGH])[..., None]
+        pixels = self.camera.project(np.stack([x, y, z], -1))
+        return np.asarray((pixels @ self.reach.directions.T).max(axis=-2))
+
+    def _off(self, values: Array) -> Array:
+        """By how much they reach too far, shape (N, K) [px]."""
+        off = self._seen(self._with_low(values)) - self.reach.far
+        return np.where(self.reach.covered, np.minimum(off, 0.0), off)
+
+    def _linear(
+        self, values: Array, square: float, cube: float, alike: bool
+    ) -> tuple[Array, Array, Array]:
+        """Residuals, their derivatives by all 6N parameters, and their weights."""
+        full = self._with_low(values)
+        changed = full + np.eye(7)[:, None, :] * _CHANGE
+        seen = self._seen(np.concatenate([full[None], changed]))
+        off = seen[0] - self.reach.far
+        active = ~self.reach.covered | (off < 0.0)
+        slopes = (seen[1:] - seen[0]) / _CHANGE[:, None, None]  # (7, N, K)
+        count, k = off.shape
+        matrix = np.zeros((count, k, count, 6))
+        own = np.arange(count)
+        matrix[own, :, own, :] = slopes[:6].transpose(1, 2, 0)
+        matrix[..., _HIGH] += slopes[_LOW][:, :, None] * self.under[:, None, :]
+        doubt = COMMON * OUTLINE * self.reach.scale[:, None]
+        weights = active / doubt**2
+        known, derivative, sure = self._known(values, square, cube, alike)
+        return (
+            np.concatenate([(off * active).ravel(), known]),
+            np.concatenate([matrix.reshape(count * k, 6 * count), derivative]),
+            np.concatenate([weights.ravel(), sure]),
+        )
+
+    def _known(
+        self, values: Array, square: float, cube: float, alike: bool
+    ) -> tuple[Array, Array, Array]:
+        """What is known beforehand, as further residuals."""
+        rows, off, sure = [], [], []
+
+        def add(value: float, doubt: float, *terms: tuple[int, int, float]) -> None:
+            row = np.zeros((self.count, 6))
+            for index, column, factor in terms:
+                row[index, column] += factor
+            rows.append(row.ravel())
+            off.append(value)
+            sure.append(doubt**-2)
+
+        for index in range(self.count):
+            item, below = values[index], int(self.below[index])
+            is_box = self.shapes[index] == BOX
+            for axis in (_X, _Y):
+                add(item[axis] - self.foot[index, axis], ON_PLACE, (index, axis, 1.0))
+                if below >= 0:
+                    off_below = item[axis] - values[below, axis]
+                    add(off_below, ON_BLOCK, (index, axis, 1.0), (below, axis, -1.0))
+            add(0.0, YAW if is_box else 1e-3, (index, _YAW, 1.0))
+            wide, deep, high = item[_WIDE:_LOW]
+            add(wide - deep, square if is_box else 1e-4, (index, _WIDE, 1.0), (index, _DEEP, -1.0))
+            high_as_wide = 1e-4 if self.shapes[index] == SPHERE else cube if is_box else CUBE
+            add(high - wide, high_as_wide, (index, _HIGH, 1.0), (index, _WIDE, -1.0))
+            add(wide - 0.045, WIDTH, (index, _WIDE, 1.0))
+            if alike and index:
+                before = values[index - 1, _WIDE]
+                add(wide - before, EQUAL, (index, _WIDE, 1.0), (index - 1, _WIDE, -1.0))
+        return np.array(off), np.array(rows), np.array(sure)
+
+    def _surface(self, index: int, values: Array, covariance: Array, misfit: float) -> BlockSurface:
+        x, y, yaw, wide, deep, high = (float(value) for value in values[index])
+        to_block = np.zeros((7, self.count, 6))
+        to_block[[0, 1, 2, 3, 4], index, [_X, _Y, _YAW, _WIDE, _DEEP]] = 1.0
+        to_block[5, :, _HIGH] = self.under[index]
+        to_block[6, :, _HIGH] = self.under[index]
+        to_block[6, index, _HIGH] = 1.0
+        flat = to_block.reshape(7, -1)
+        low = float(self.foot[index, 2] + self.under[index] @ values[:, _HIGH])
+        turn = round(yaw / (np.pi / 2)) if self.shapes[index] == BOX else 0
+        if turn % 2:
+            flat = flat[[0, 1, 2, 4, 3, 5, 6]]
+            wide, deep = deep, wide
+        doubt = flat @ covariance @ flat.T + 1e-9 * np.eye(7)
+        rival = "" if self.shapes[index] == BOX else BOX  # light alone tells them apart
+        return BlockSurface(
+            self.shapes[index], (x, y), yaw - turn * np.pi / 2, (wide, deep), low, low + high,
+            doubt, rival=rival, upright=misfit < MISFIT, seen_low=low,
+            behind=bool(self.behind[index]),
+        )  # fmt: skip
