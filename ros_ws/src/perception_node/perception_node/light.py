@@ -152,8 +152,8 @@ def _explain(colors: Array, table: Array | None, gains: Array) -> ColorFit:
     tint = _GAIN_COST * (np.log(gains) ** 2).sum(axis=1)
     unusual = _SCENE_SHADE_COST * np.log(_SHADES / _USUAL_SHADE) ** 2
     total = least_own.sum(axis=2) + tint + unusual[:, None]
-    scene, light = np.unravel_index(int(total.argmin()), total.shape)
-    best = costs[scene, light].astype(np.float64)
+    shade, light = divmod(int(total.argmin()), len(gains))
+    best = costs[shade, light].astype(np.float64)
     order = np.argsort(best, axis=1)[:, :2]
     of = np.arange(len(colors))
     first, second = best[of, order[:, 0]], best[of, order[:, 1]]
