@@ -75,7 +75,7 @@ def without_specks(labels: Labels) -> Labels:
     least = MIN_AREA * labels.size
     speck = np.zeros(labels.shape, bool)
     for value in values:
-        count, parts, stats, _ = cv2.connectedComponentsWithStats(
+        _, parts, stats, _ = cv2.connectedComponentsWithStats(
             (labels == value).astype(np.uint8), connectivity=4
         )
         small = stats[:, cv2.CC_STAT_AREA] < least
