@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from seen_worlds import LABELLED, TOWERS, observe, perceive
 
+from perception_node.blocks.outline import shape_from_outline
 from perception_node.errors import BadImageError
 from perception_node.segment import Volume, given_labels
 from perception_node.segment.mending import mended
@@ -116,3 +117,9 @@ def test_without_depth_what_is_beside_a_block_does_not_change_its_shape(
     perceived = LABELLED.perceive(replace(observation, depth=None))
     assert {item.shape for item in perceived.graph.objects} == {"box"}
     assert perceived.graph.relations == up_relations(TOWERS)
+
+
+@pytest.mark.parametrize(("levels", "shape"), [((8, 12), "box"), ((9, 10, 11, 12), "cylinder")])
+def test_dark_faces_are_told_from_what_is_round(levels: tuple[int, ...], shape: str) -> None:
+    rgb = np.repeat(np.repeat(np.array([levels], np.uint8), 24 // len(levels), 1), 24, 0)
+    assert shape_from_outline(rgb[..., None].repeat(3, 2), np.ones((24, 24), bool)) == shape

@@ -20,7 +20,9 @@ _SHADED: Final = 0.02
 _FULL: Final = 0.9
 #: Share of full rows from which a round block is a cylinder; a ball has 0.44 of them.
 _STRAIGHT: Final = 0.62
-#: In dark blocks so much of it is rounding, and where neighbours differ noise, up to this [0..255].
+#: In blocks as dark as this so much of it is rounding, and where neighbours differ noise, up to
+#: this [0..255].
+_DARK: Final = 32.0
 _ROUNDING: Final = 0.15
 _NOISE: Final = 0.64
 #: Pixels whose channels' shares of the sum differ by more from the block's are of something else.
@@ -47,8 +49,9 @@ def shape_from_outline(rgb: NDArray[np.uint8], mask: NDArray[np.bool_]) -> str:
     samples = light[np.linspace(0, len(light) - 1, min(_SAMPLES, len(light))).round().astype(int)]
     faces = cluster_on_line(samples, min(_FACES, len(samples)))
     spread = np.sqrt(within_cluster_cost(samples, faces) / len(samples))
+    middle = float(np.median(light))
     grain = min(_ROUNDING + _grain(rgb, mask), _NOISE)
-    if spread < max(_SHADED * float(np.median(light)), grain):
+    if spread < (grain if middle < _DARK else _SHADED * middle):
         return BOX
     widths = mask.sum(axis=1)
     widths = widths[widths > 0]

@@ -109,7 +109,7 @@ def _cut(labels: Labels, rgb: NDArray[np.uint8]) -> Labels:
             continue
         others = [_look(labels == other, rgb) for other in _present(labels) if other != value]
         sizes = [_look(part, rgb) for part in (mask & ~second, second)]
-        if any(_is_piece(size, others or sizes) for size in sizes):
+        if _is_one(_look(mask, rgb), others) or any(_is_piece(size, others) for size in sizes):
             continue  # a lid that mirrors the room: what colours say of it is looked at later
         out = out.copy() if out is labels else out
         out[second] = int(out.max()) + 1
@@ -206,6 +206,8 @@ def _is_one(both: _Look, others: list[_Look]) -> bool:
 
 def _is_piece(look: _Look, others: list[_Look]) -> bool:
     """Whether it is too small for a block."""
+    if not others:
+        return False
     high, wide = _usual(others)
     return look.height < _PIECE * high or look.width < _PIECE * wide
 
