@@ -40,6 +40,8 @@ _DARK: Final = 2.0
 _TWO: Final = 0.06
 #: Part of a mask that has another colour, where it is of two blocks.
 _SHARE: Final = 0.15
+#: Percentages of its pixels between which both colours are.
+_RANGE: Final = (10, 90)
 #: Of a mask so many pixels at the rim are mixtures, and about so many others are looked at.
 _RIM: Final = 1
 _PIXELS: Final = 300
@@ -156,6 +158,9 @@ def _second_color(mask: Mask, rgb: NDArray[np.uint8]) -> Mask | None:
     if len(seen) < 8:
         return None
     some = seen[:: max(1, len(seen) // _PIXELS)]
+    low, high = np.percentile(some, _RANGE, axis=0)
+    if (high - low).max() < _TWO:
+        return None
     _, _, axes = np.linalg.svd(some - some.mean(axis=0), full_matrices=False)
     along = some @ axes[0]
     one, two = (some[group] for group in cluster_on_line(along, 2))
