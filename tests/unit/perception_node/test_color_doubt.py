@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from seen_worlds import TOWERS, camera_of
 
 from perception_node import Observation, Perception, load_weights
-from perception_node.names import MIN_MARGIN, explain_colors, name_blocks
+from perception_node.light import MIN_MARGIN, explain_colors
+from perception_node.names import name_blocks
 from scene_graph import BASIC_COLORS, COLORS, UNKNOWN, GraphStatus, up_relations
 from sim_node import ColorConfig, SensorConfig, World, sense
 
@@ -109,3 +110,19 @@ def test_in_light_that_tells_no_colours_no_graph_is_accepted(
     seen = PERCEPTION.perceive(Observation(frame.rgb, None, frame.depth, camera_of(world)))
     assert seen.status is not GraphStatus.CONFIDENT
     assert seen.message
+
+
+def of_metal(name: str, table: float) -> np.ndarray:
+    """The code of an upright wall of metal that mirrors a grey table, by its linear brightness."""
+    light = np.array(COLORS[name]) ** 2.2 * (table + 0.1)
+    return np.asarray(light ** (1.0 / 2.2))
+
+
+@pytest.mark.parametrize("metal", ["brown", "purple", "green", "yellow"])
+def test_metal_that_mirrors_a_dark_table_has_the_name_of_its_colour(metal: str) -> None:
+    lit = [np.array(COLORS[name]) * 0.85 for name in ("red", "blue", "pink", "cyan")]
+    colors = np.array([*lit, of_metal(metal, 0.05)])
+    fit = explain_colors(colors, np.full(3, 0.05 ** (1.0 / 2.2)))
+    assert fit.names[-1] == metal and fit.known.all() and fit.margins.min() >= MIN_MARGIN
+    # Where no dark table is seen nothing explains so dark a block.
+    assert not explain_colors(colors).known[-1]

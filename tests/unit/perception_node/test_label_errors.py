@@ -7,7 +7,10 @@ import numpy as np
 import pytest
 from seen_worlds import LABELLED, TOWERS, observe, perceive
 
+from perception_node.blocks.outline import shape_from_outline
+from perception_node.errors import BadImageError
 from perception_node.segment import Volume, given_labels
+from perception_node.segment.mending import mended
 from scene_graph import ROW_OF_THREE, GraphStatus, up_relations
 from sim_node.layouts import random_layout
 from sim_node.sensor import SegmentationConfig, SensorConfig, sense
@@ -57,6 +60,54 @@ def test_labels_without_depth_are_taken_as_they_are(world: World) -> None:
     assert np.array_equal(segments.label_image, observation.labels)
 
 
+@pytest.mark.parametrize(("kind", "strength"), [("merged", 1), ("split", 1), ("speckled", 5)])
+@pytest.mark.parametrize("seed", range(730, 734))
+def test_without_depth_masks_are_mended_by_colour(
+    world: World, kind: str, strength: int, seed: int
+) -> None:
+    layout = random_layout(seed, 6)
+    world.reset(layout, seed)
+    observation = observe(world, sense(world.render(), erring(kind, strength), (seed, 0, 0)))
+    perceived = LABELLED.perceive(replace(observation, depth=None))
+    assert perceived.status is GraphStatus.CONFIDENT, perceived.message
+    assert perceived.graph.relations == up_relations(layout)
+
+
+def tower(colors: list[tuple[int, int, int]], heights: list[int]) -> tuple[np.ndarray, np.ndarray]:
+    """A picture of blocks 20 px wide on one another, each of so many rows, and one beside them."""
+    rgb, labels = np.full((128, 128, 3), 200, np.uint8), np.zeros((128, 128), np.int32)
+    row = 110
+    for label, (color, height) in enumerate(zip(colors, heights), start=1):
+        rgb[row - height : row, 20:40], labels[row - height : row, 20:40] = color, label
+        row -= height
+    rgb[88:110, 80:100], labels[88:110, 80:100] = (20, 40, 200), len(colors) + 1
+    return labels, rgb
+
+
+def test_two_blocks_of_one_colour_stay_two() -> None:
+    labels, rgb = tower([(200, 20, 20), (200, 20, 20)], [22, 22])
+    assert mended(labels, rgb) is labels
+
+
+def test_two_masks_in_one_block_are_one() -> None:
+    labels, rgb = tower([(200, 20, 20), (180, 18, 18)], [9, 13])
+    assert np.array_equal(mended(labels, rgb) > 0, labels > 0)
+    assert len(np.unique(mended(labels, rgb))) == 3
+
+
+def test_a_block_and_a_piece_of_its_colour_are_refused() -> None:
+    with pytest.raises(BadImageError, match="no two blocks"):
+        mended(*tower([(200, 20, 20), (200, 20, 20)], [22, 10]))
+
+
+def test_a_mask_of_black_on_grey_is_two_and_one_with_a_bright_lid_is_one() -> None:
+    labels, rgb = tower([(120, 120, 120), (15, 15, 15)], [22, 22])
+    merged = np.where(labels == 2, 1, labels)
+    assert len(np.unique(mended(merged, rgb))) == 4
+    labels, rgb = tower([(150, 15, 15), (230, 25, 25)], [16, 6])
+    assert len(np.unique(mended(np.where(labels == 2, 1, labels), rgb))) == 3
+
+
 @pytest.mark.parametrize("kind", ["shifted", "boundary", "eroded"])
 def test_without_depth_what_is_beside_a_block_does_not_change_its_shape(
     world: World, kind: str
@@ -66,3 +117,9 @@ def test_without_depth_what_is_beside_a_block_does_not_change_its_shape(
     perceived = LABELLED.perceive(replace(observation, depth=None))
     assert {item.shape for item in perceived.graph.objects} == {"box"}
     assert perceived.graph.relations == up_relations(TOWERS)
+
+
+@pytest.mark.parametrize(("levels", "shape"), [((8, 12), "box"), ((9, 10, 11, 12), "cylinder")])
+def test_dark_faces_are_told_from_what_is_round(levels: tuple[int, ...], shape: str) -> None:
+    rgb = np.repeat(np.repeat(np.array([levels], np.uint8), 24 // len(levels), 1), 24, 0)
+    assert shape_from_outline(rgb[..., None].repeat(3, 2), np.ones((24, 24), bool)) == shape

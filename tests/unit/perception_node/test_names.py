@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from perception_node.names import color_names, mean_colors, name_blocks, unique_names
+from perception_node.light import color_names
+from perception_node.names import mean_colors, name_blocks, unique_names
 from scene_graph import BASIC_COLORS, COLORS
 
 NAMES = BASIC_COLORS

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from scene_graph import SceneGraph, SceneObject, object_name
 
 from .blocks import BlockSurface
-from .names import color_names, mean_colors
+from .light import color_names
+from .names import mean_colors
 from .segment import Segments
 from .visual_module.coordinates import Coordinates
 

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from scene_graph import GraphStatus, SceneGraph
 
 from .blocks import Blocks
-from .names import MAX_DISTANCE, MIN_MARGIN, Names
+from .light import MAX_DISTANCE, MIN_MARGIN
+from .names import Names
 from .places.occlusion import Occlusion
 from .verdict import GRAIN
 

@@ -20,6 +20,11 @@ _SHADED: Final = 0.02
 _FULL: Final = 0.9
 #: Share of full rows from which a round block is a cylinder; a ball has 0.44 of them.
 _STRAIGHT: Final = 0.62
+#: In blocks as dark as this so much of it is rounding, and where neighbours differ noise, up to
+#: this [0..255].
+_DARK: Final = 32.0
+_ROUNDING: Final = 0.15
+_NOISE: Final = 0.64
 #: Pixels whose channels' shares of the sum differ by more from the block's are of something else.
 _SAME_HUE: Final = 0.06
 #: So many pixels at the rim are mixtures, where that leaves at least this part of the mask [px].
@@ -44,11 +49,22 @@ def shape_from_outline(rgb: NDArray[np.uint8], mask: NDArray[np.bool_]) -> str:
     samples = light[np.linspace(0, len(light) - 1, min(_SAMPLES, len(light))).round().astype(int)]
     faces = cluster_on_line(samples, min(_FACES, len(samples)))
     spread = np.sqrt(within_cluster_cost(samples, faces) / len(samples))
-    if spread < _SHADED * max(float(np.median(light)), 32.0):
+    middle = float(np.median(light))
+    grain = min(_ROUNDING + _grain(rgb, mask), _NOISE)
+    if spread < (grain if middle < _DARK else _SHADED * middle):
         return BOX
     widths = mask.sum(axis=1)
     widths = widths[widths > 0]
     return CYLINDER if np.mean(widths >= _FULL * widths.max()) > _STRAIGHT else SPHERE
+
+
+def _grain(rgb: NDArray[np.uint8], mask: NDArray[np.bool_]) -> float:
+    """By how much the brightness of half of the neighbours in a row differs [0..255]."""
+    left, top, width, height = cv2.boundingRect(mask.view(np.uint8))
+    box = np.s_[top : top + height, left : left + width]
+    light, inside = rgb[box].max(axis=-1).astype(np.float64), mask[box]
+    both = inside[:, 1:] & inside[:, :-1]
+    return float(np.median(np.abs(np.diff(light, axis=1))[both])) if both.any() else 0.0
 
 
 def _of_one_hue(rgb: NDArray[np.uint8], mask: NDArray[np.bool_]) -> NDArray[np.bool_]:

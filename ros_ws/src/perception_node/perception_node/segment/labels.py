@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from perception_node.errors import BadImageError
 from perception_node.observation import Observation
 
+from .mending import mended
 from .rgbd import find_in_rgbd
 from .segments import Segments
 from .volume import Volume
@@ -29,10 +30,10 @@ INSIDE: Final = 0.6
 def given_labels(observation: Observation, volume: Volume | None = None) -> Segments:
     """The segments that the observation's own labels show, their outlines made exact by depth.
 
-    Without depth, camera or volume the labels are taken as they are.
+    Without depth, camera or volume only those errors are undone that colours tell.
 
     Raises:
-        BadImageError: if it has no labels.
+        BadImageError: if it has no labels, or such that nobody can tell which blocks there are.
     """
     labels = observation.labels
     if labels is None:
@@ -40,7 +41,7 @@ def given_labels(observation: Observation, volume: Volume | None = None) -> Segm
             "the image comes without instance labels; give them, or a segmenter that needs none"
         )
     if volume is None or observation.depth is None or observation.camera is None:
-        return Segments.from_labels(labels)
+        return Segments.from_labels(mended(labels, observation.rgb))
     return Segments.from_labels(_snapped(labels, find_in_rgbd(observation, volume, labels > 0)))
 
 

@@ -1,0 +1,261 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What light, and blocks of which colours and materials, explain the colours of a scene.
+
+In linear light, a surface of colour b that diffuses the light shows E·(b + s)·L: the light L is
+that of the scene, the shade E about that of its other blocks, and a little sheen s of the light is
+mirrored at its surface. Metal has no sheen of the light's colour. An upright wall of it mirrors the
+table before it, tinted by its own colour: E·b·T, where E is about the brightness of that table and
+T its colour. So on a dark table metal is darker than all else, and orange metal no brown paint.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scene_graph import COLORS
+
+Array = NDArray[np.float64]
+Real = NDArray[np.float32]
+
+_NAMES: Final = tuple(COLORS)
+#: Light is about this power of its code in a picture.
+_GAMMA: Final = 2.2
+#: Brightness that a surface may have, as a code relative to the colour's own, in equal ratios.
+_SHADES: Final = np.geomspace(0.25, 1.4, 20)
+_STEP: Final = float(np.log(_SHADES[1] / _SHADES[0]))
+#: What a surface mirrors of white light, and the cost of it [ΔE²].
+_SHEEN: Final = (0.0, 0.006, 0.012, 0.02, 0.03)
+_SHEEN_COST: Final = (0.0, 4.0, 8.0, 16.0, 32.0)
+#: Cost of a block's shade that differs from the scene's, per squared logarithm [ΔE²].
+_OWN_SHADE_COST: Final = 1600.0
+#: Cost of a scene's shade that differs from the usual one, per squared logarithm [ΔE²].
+_SCENE_SHADE_COST: Final = 100.0
+_USUAL_SHADE: Final = 0.8
+#: Cost of a block of metal, and of its shade that differs from what it mirrors: so much of the
+#: table's light and, as it is rough, a little of the room's [ΔE²].
+_METAL_COST: Final = 20.0
+_METAL_SHADE_COST: Final = 600.0
+_OF_TABLE: Final = 0.95
+_OF_ROOM: Final = 0.11
+#: It mirrors no more than so much of the table's colour: none, half, all of it.
+_OF_TINT: Final = (0.0, 0.5, 1.0)
+#: Colour of the light: gains of red and of blue over green, in equal ratios, and the cost of
+#: one that is not 1, per squared logarithm [ΔE²].
+_GAINS: Final = np.exp(np.linspace(-0.42, 0.42, 7))
+#: And finer, about the best of those.
+_FINER_GAINS: Final = np.exp(np.linspace(-0.1, 0.1, 5))
+_GAIN_COST: Final = 400.0
+#: White light that explains all colours to this [ΔE] is not asked further.
+_WHITE_ENOUGH: Final = 5.0
+#: if they are so many: of fewer, the light and the names can be mistaken for one another.
+_ENOUGH: Final = 3
+#: A block of no known colour says nothing of the light beyond this cost [ΔE²].
+_MOST_COST: Final = 150.0
+#: Colours are compared as if each were as bright as this, by one of these gains, so that dark ones
+#: are told apart as well as bright ones are.
+_BRIGHTNESS: Final = 0.2
+_LEVELS: Final = np.geomspace(0.5, 4.0, 7)
+_LUMINANCE: Final = np.array([0.3, 0.5, 0.2])
+#: A colour is not named that is further than this from all names, or not nearer by this to its own
+#: than to the next one [ΔE].
+MAX_DISTANCE: Final = 7.5
+MIN_MARGIN: Final = 5.0
+
+_XYZ_FROM_RGB: Final = np.array(
+    [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
+)
+_WHITE_XYZ: Final = _XYZ_FROM_RGB.sum(axis=1)
+
+
+@dataclass(frozen=True)
+class ColorFit:
+    """How the colours of N blocks are explained, all lit by one light.
+
+    Attributes:
+        names: the nearest of ``scene_graph.COLORS`` for each.
+        others: the next nearest.
+        distances: from the nearest, shape (N,) [ΔE].
+        margins: by how much the next one is further away, in this light and in those by which all
+            blocks together are explained about as well, shape (N,) [ΔE].
+        light: its colour, gains of red, green and blue.
+    """
+
+    names: tuple[str, ...]
+    others: tuple[str, ...]
+    distances: Array
+    margins: Array
+    light: Array
+
+    @property
+    def known(self) -> NDArray[np.bool_]:
+        """Which colours have a name, shape (N,)."""
+        return np.asarray(self.distances <= MAX_DISTANCE)
+
+
+def color_names(colors: Array) -> tuple[str, ...]:
+    """The names of :func:`explain_colors`."""
+    return explain_colors(colors).names
+
+
+def explain_colors(colors: Array, table: Array | None = None) -> ColorFit:
+    """The nearest of ``scene_graph.COLORS`` for each colour, in CIE Lab, whatever the light.
+
+    Light and shade scale a colour, which alone would turn orange into brown, and a coloured light
+    scales its channels. The blocks of a scene are lit alike, so one shade and one light are sought
+    that explain all of them best; each may differ from the shade a little, at a cost, or be of
+    metal.
+
+    Args:
+        colors: sRGB in 0..1, shape (N, 3).
+        table: what the picture shows before the blocks, likewise, shape (3,); None: not known, and
+            no block is taken for metal.
+    """
+    if len(colors) == 0:
+        return ColorFit((), (), np.zeros(0), np.zeros(0), np.ones(3))
+    white = _explain(colors, table, np.ones((1, 3)))
+    enough = len(colors) >= _ENOUGH and white.distances.max() < _WHITE_ENOUGH
+    if enough and white.margins.min() >= MIN_MARGIN:
+        return white
+    coarse = _explain(colors, table, _lights(_GAINS))
+    fine = _explain(colors, table, coarse.light * _lights(_FINER_GAINS))
+    # A light far from the best one may explain the blocks by other names.
+    margins = np.minimum(fine.margins, coarse.margins)
+    return ColorFit(fine.names, fine.others, fine.distances, margins, fine.light)
+
+
+def _lights(gains: Array) -> Array:
+    """Lights of all pairs of gains of red and of blue, shape (lights, 3)."""
+    red, blue = (gain.ravel() for gain in np.meshgrid(gains, gains, indexing="ij"))
+    return np.stack([red, np.ones_like(red), blue], axis=-1)
+
+
+def _explain(colors: Array, table: Array | None, gains: Array) -> ColorFit:
+    """The same for lights of certain colours only, shape (lights, 3)."""
+    diffuse, metal = _distances(_linear(colors), table, gains)
+    # A shade that differs by so many steps costs more than no name.
+    reach = int(np.sqrt(_MOST_COST / _OWN_SHADE_COST) / _STEP) + 2
+    costs = np.empty((len(_SHADES), *metal.shape), np.float32)
+    for scene in range(len(_SHADES)):
+        cost = costs[scene]
+        cost[:] = metal
+        for own in range(max(0, scene - reach), min(len(_SHADES), scene + reach + 1)):
+            np.minimum(
+                cost, diffuse[own] + _OWN_SHADE_COST * (_STEP * (own - scene)) ** 2, out=cost
+            )
+    bounded = np.minimum(costs, _MOST_COST)  # (shades of the scene, lights, N, names)
+    least_own = bounded.min(axis=3)
+    tint = _GAIN_COST * (np.log(gains) ** 2).sum(axis=1)
+    unusual = _SCENE_SHADE_COST * np.log(_SHADES / _USUAL_SHADE) ** 2
+    total = least_own.sum(axis=2) + tint + unusual[:, None]
+    shade, light = divmod(int(total.argmin()), len(gains))
+    best = costs[shade, light].astype(np.float64)
+    order = np.argsort(best, axis=1)[:, :2]
+    of = np.arange(len(colors))
+    first, second = best[of, order[:, 0]], best[of, order[:, 1]]
+    # How much all are worse explained together, where one is called otherwise.
+    by_name = ((total[..., None] - least_own)[..., None] + bounded).min(axis=(0, 1))
+    by_name[of, order[:, 0]] = np.inf
+    risen = np.sqrt(np.maximum(by_name.min(axis=1) - total.min(), 0.0))
+    is_metal = metal[light, of, order[:, 0]] <= first
+    return ColorFit(
+        tuple(_NAMES[index] for index in order[:, 0]),
+        tuple(_NAMES[index] for index in order[:, 1]),
+        np.sqrt(np.maximum(first - _METAL_COST * is_metal, 0.0)),
+        np.minimum(np.sqrt(second) - np.sqrt(first), risen),
+        gains[light],
+    )
+
+
+def _distances(light: Array, table: Array | None, gains: Array) -> tuple[Real, Real]:
+    """Squared distances of the blocks from all names, costs of sheen and metal included [ΔE²].
+
+    Args:
+        light: of the blocks, linear, shape (N, 3).
+        table: see :func:`explain_colors`.
+        gains: of the lights' codes, shape (lights, 3).
+
+    Returns:
+        Diffuse, (shades, lights, N, names), and metal, (lights, N, names).
+    """
+    lights, of_light = len(gains), gains**_GAMMA
+    diffuse = np.empty((len(_SHADES), lights, len(light), len(_NAMES)), np.float32)
+    metal = np.full(diffuse.shape[1:], np.inf, np.float32)
+    wanted = np.log(_BRIGHTNESS / np.maximum(light @ _LUMINANCE, 1e-4))
+    levels = np.abs(wanted[:, None] - np.log(_LEVELS)).argmin(axis=1)
+    tints = []
+    if table is not None:
+        before = _linear(table)
+        tint = before / of_light
+        tint = tint / tint.mean(axis=1, keepdims=True)
+        tints = [of_light * tint**part for part in _OF_TINT]
+        usual = _OF_TABLE * float(before.mean()) + _OF_ROOM
+        shade_cost = _METAL_SHADE_COST * (np.log(_SHADES) - np.log(usual) / _GAMMA) ** 2
+        shade_cost = (shade_cost + _METAL_COST)[:, None].astype(np.float32)
+    sheen_cost = np.array(_SHEEN_COST, np.float32)[:, None, None]
+    plain = len(_SHADES) * len(_NAMES)
+    for index, level in enumerate(levels):
+        shown, squares = _shown(gains.tobytes(), int(level))
+        seen = light[index] * _LEVELS[level]
+        cost = _squared(seen / of_light, shown, squares)
+        cost = cost.reshape(lights, len(_SHEEN), len(_SHADES), len(_NAMES))
+        diffuse[:, :, index] = (cost + sheen_cost).min(axis=1).transpose(1, 0, 2)
+        for colored in tints:
+            cost = _squared(seen / colored, shown[:, :plain], squares[:, :plain])
+            cost = cost.reshape(lights, len(_SHADES), len(_NAMES)) + shade_cost
+            np.minimum(metal[:, index], cost.min(axis=1), out=metal[:, index])
+    return diffuse, metal
+
+
+def _squared(seen: Array, shown: Real, squares: Real) -> Real:
+    """Squared distances in CIE Lab of what is seen in each light from all that may be shown in it.
+
+    Args:
+        seen: linear, shape (lights, 3).
+        shown, squares: see :func:`_shown`.
+    """
+    at = _lab(seen)
+    # |a - b|² by a product.
+    product = shown @ (-2.0 * at)[:, :, None]
+    return np.maximum(product[..., 0] + squares + (at**2).sum(axis=1)[:, None], np.float32(0.0))
+
+
+@functools.lru_cache(maxsize=64)
+def _shown(gains: bytes, level: int) -> tuple[Real, Real]:
+    """CIE Lab of every colour in every shade, with what it mirrors of the light, and its square.
+
+    As it is once the light is taken out of what a sensor that saturates saw.
+
+    Args:
+        gains: of the lights, the bytes of doubles of shape (lights, 3).
+        level: which of the gains by which colours are compared.
+
+    Returns:
+        Names fastest, then shades, then sheen, shape (lights, sheens · shades · names, 3), without
+        the last axis the square.
+    """
+    light = np.frombuffer(gains).reshape(-1, 1, 3) ** _GAMMA
+    palette = _linear(np.array([COLORS[name] for name in _NAMES]))
+    mirrored = palette + np.array(_SHEEN)[:, None, None, None]
+    shown = (mirrored * (_SHADES**_GAMMA)[:, None, None]).reshape(1, -1, 3)
+    shown = _lab(_LEVELS[level] * np.minimum(shown * light, 1.0) / light)
+    return shown, (shown**2).sum(axis=-1)
+
+
+def _linear(code: Array) -> Array:
+    """Light of sRGB in 0..1, any shape."""
+    return np.asarray(
+        np.where(code <= 0.04045, code / 12.92, ((np.maximum(code, 0.0) + 0.055) / 1.055) ** 2.4)
+    )
+
+
+def _lab(linear: Array) -> Real:
+    """CIE Lab of linear light, which may be brighter than white, shape (..., 3)."""
+    xyz = ((linear @ _XYZ_FROM_RGB.T) / _WHITE_XYZ).astype(np.float32)
+    root = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + np.float32(16.0 / 116.0))
+    x, y, z = np.moveaxis(root, -1, 0)
+    return np.stack([116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)], axis=-1)
