@@ -9,18 +9,19 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 import torch
 from latent.blocks_world import DataError
 from latent.clevr.dataset import read_clevr
-from latent.qa_training import baseline_rows, qa_rows, train_qa
+from latent.qa_training import baseline_rows, qa_rows, train_qa, train_reader
 from latent.trainings import StoppedError
 from results_file import Row, print_rows, write_result
 
 from perception_node.errors import PerceptionError
 from perception_node.latent.answering import ANSWERERS
-from perception_node.latent.qa_trainer import SETTINGS, QaConfig
+from perception_node.latent.qa_trainer import SETTINGS, QaConfig, ReaderConfig
 from perception_node.latent.state_encoder import CHANNELS, EncoderConfig
 
 
@@ -38,7 +39,8 @@ def main() -> int:
         print("stopped; the same command goes on from there")
         return 130
     print_rows(rows)
-    command = "make eval-latent-qa" + (f' ARGS="{" ".join(sys.argv[1:])}"' if sys.argv[1:] else "")
+    told = _without_folders(sys.argv[1:])
+    command = "make eval-latent-qa" + (f' ARGS="{" ".join(told)}"' if told else "")
     print(write_result("latent_qa", command, rows, time.perf_counter() - begun))
     return 0
 
@@ -47,18 +49,27 @@ def measure(options: argparse.Namespace) -> list[Row]:
     """Trains and measures every setting and size that was asked for."""
     train, test = (read_clevr(options.data / f"clevr_{name}") for name in ("train", "test"))
     rows = baseline_rows(train, test)
+    config = ReaderConfig(options.answerer, epochs=options.reader_epochs, seed=options.seed)
+    reader = train_reader(options.runs / f"reader_{options.answerer}_{options.seed}", train, config)
     for channels in options.channels:
         for setting in options.settings:
-            config = QaConfig(
+            qa = QaConfig(
                 EncoderConfig(options.quantiser, channels, options.width),
                 setting,
-                options.answerer,
                 epochs=options.epochs,
                 seed=options.seed,
             )
             folder = options.runs / f"{setting}_{channels}_{options.answerer}_{options.seed}"
-            rows += qa_rows(train_qa(folder, train, config), test)
+            rows += qa_rows(train_qa(folder, qa, reader), test)
     return rows
+
+
+def _without_folders(arguments: Sequence[str]) -> list[str]:
+    """What a result depends on; not where this machine keeps its data, nor how many threads."""
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    for name in ("--data", "--runs", "--threads"):
+        parser.add_argument(name)
+    return parser.parse_known_args(arguments)[1]
 
 
 def _parse() -> argparse.Namespace:
@@ -72,7 +83,8 @@ def _parse() -> argparse.Namespace:
     parser.add_argument("--answerer", choices=ANSWERERS, default="program")
     parser.add_argument("--quantiser", default="binary", help="of the encoder")
     parser.add_argument("--width", type=int, default=24, help="of the encoder's layers")
-    parser.add_argument("--epochs", type=int, default=30, help="passes over the images")
+    parser.add_argument("--epochs", type=int, default=16, help="of an encoder's training")
+    parser.add_argument("--reader-epochs", type=int, default=20, help="of the answerer's")
     parser.add_argument("--threads", type=int, default=2, help="processor threads")
     parser.add_argument("--seed", type=int, default=0, help="of weights and batches")
     return parser.parse_args()

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from results_file import Row
 
-from perception_node.latent.qa_trainer import QaConfig, QaTrainer
+from perception_node.latent.qa_trainer import QaConfig, QaTrainer, ReaderConfig, ReaderTrainer
 
 from .clevr.asked import (
     Vocabulary,
@@ -34,8 +34,8 @@ TABLE: Final[dict[str, tuple[float, float, str | None, str | None]]] = {
 }
 
 
-def train_qa(folder: Path, train: ClevrSet, config: QaConfig) -> QaTrainer:
-    """A trained run of a folder, gone on with or taken as it is.
+def train_reader(folder: Path, train: ClevrSet, config: ReaderConfig) -> ReaderTrainer:
+    """A trained answerer of a folder, gone on with or taken as it is.
 
     Raises:
         StoppedError: by Ctrl-C.
@@ -43,16 +43,37 @@ def train_qa(folder: Path, train: ClevrSet, config: QaConfig) -> QaTrainer:
     """
     told = told_to(config.answerer)
     vocabulary = Vocabulary.of(train, told)
-    config = replace(config, words=vocabulary.words, answers=vocabulary.answers)
-    trainer = QaTrainer(asked_of(train, vocabulary, told), config)
+    mirrored = tuple(
+        (one, one.replace("left", "right"))
+        for one in vocabulary.words
+        if "left" in one and one.replace("left", "right") in vocabulary.words
+    )
+    config = replace(config, words=vocabulary.words, answers=vocabulary.answers, mirrored=mirrored)
+    trainer = ReaderTrainer(asked_of(train, vocabulary, told), config)
+    _run(trainer, folder, f"answerer ({config.answerer})")
+    return trainer
+
+
+def train_qa(folder: Path, config: QaConfig, reader: ReaderTrainer) -> QaTrainer:
+    """A trained state encoder of a folder, gone on with or taken as it is.
+
+    Raises:
+        StoppedError: by Ctrl-C.
+        WeightsError: the folder holds another run.
+    """
+    config = replace(config, reader=reader.config)
+    trainer = QaTrainer(reader.batches.asked, config, reader.answerer)
+    _run(trainer, folder, f"questions ({config.setting}, o = {config.encoder.channels})")
+    return trainer
+
+
+def _run(trainer: ReaderTrainer | QaTrainer, folder: Path, title: str) -> None:
     checkpoint = folder / CHECKPOINT
     if checkpoint.exists():
         trainer.resume(checkpoint)
-    title = f"questions ({config.setting}, o = {config.encoder.channels})"
     with progress(title, trainer.steps, trainer.step, folder / "log.txt") as shown:
         if not trainer.run(shown.show, checkpoint):
             raise StoppedError
-    return trainer
 
 
 def baseline_rows(train: ClevrSet, test: ClevrSet) -> list[Row]:
@@ -68,8 +89,9 @@ def baseline_rows(train: ClevrSet, test: ClevrSet) -> list[Row]:
 def qa_rows(trainer: QaTrainer, test: ClevrSet) -> list[Row]:
     """A line of Table 4.1, with the accuracy of each family in its note."""
     config = trainer.config
-    vocabulary = Vocabulary(config.words, config.answers)
-    asked, questions = asked_of(test, vocabulary, told_to(config.answerer)), all_questions(test)
+    answerer = config.reader.answerer
+    vocabulary = Vocabulary(config.reader.words, config.reader.answers)
+    asked, questions = asked_of(test, vocabulary, told_to(answerer)), all_questions(test)
     label = f"{config.setting}, o = {config.encoder.channels}"
     full = config.encoder.channels == 64
     accuracy, error, bound, error_bound = TABLE[config.setting]

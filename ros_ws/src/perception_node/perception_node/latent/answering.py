@@ -12,7 +12,7 @@ from typing import Final
 import torch
 from torch import Tensor, nn
 
-from .programs import ProgramNetwork, first_layers
+from .programs import ProgramNetwork
 
 #: Channels of what is seen and of the question, and edge of the map that is asked about.
 _SEEN: Final = 48
@@ -30,7 +30,12 @@ class _Sight(nn.Module):
     def __init__(self) -> None:
         super().__init__()
         self.layers = nn.Sequential(
-            *first_layers(_SEEN),
+            nn.Conv2d(3, 32, 5, stride=2, padding=2),
+            nn.BatchNorm2d(32),
+            nn.ReLU(),
+            nn.Conv2d(32, _SEEN, 3, stride=2, padding=1),
+            nn.BatchNorm2d(_SEEN),
+            nn.ReLU(),
             nn.Conv2d(_SEEN, _SEEN, 3, stride=2, padding=1),
             nn.BatchNorm2d(_SEEN),
             nn.ReLU(),
