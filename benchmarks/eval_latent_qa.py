@@ -11,18 +11,22 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Final
 
 import torch
 from latent.blocks_world import DataError
 from latent.clevr.dataset import read_clevr
-from latent.qa_training import baseline_rows, qa_rows, train_qa, train_reader
+from latent.qa_training import baseline_rows, qa_rows, reader_rows, train_qa, train_reader
 from latent.trainings import StoppedError
 from results_file import Row, print_rows, write_result
 
 from perception_node.errors import PerceptionError
 from perception_node.latent.answering import ANSWERERS
-from perception_node.latent.qa_trainer import SETTINGS, QaConfig, ReaderConfig
+from perception_node.latent.qa_trainer import SETTINGS, QaConfig, QaTrainer, ReaderConfig
 from perception_node.latent.state_encoder import CHANNELS, EncoderConfig
+
+#: Passes over the images of each setting's training.
+EPOCHS: Final = {"reconstruction": 16, "both": 2, "kl": 8}
 
 
 def main() -> int:
@@ -51,17 +55,28 @@ def measure(options: argparse.Namespace) -> list[Row]:
     rows = baseline_rows(train, test)
     config = ReaderConfig(options.answerer, epochs=options.reader_epochs, seed=options.seed)
     reader = train_reader(options.runs / f"reader_{options.answerer}_{options.seed}", train, config)
+    rows += reader_rows(reader, test)
     for channels in options.channels:
+        encoder = EncoderConfig(options.quantiser, channels, options.width)
+
+        def trained(setting: str, start: QaTrainer | None, encoder: EncoderConfig) -> QaTrainer:
+            epochs = EPOCHS | dict(options.epochs)
+            config = QaConfig(encoder, setting, epochs=epochs[setting], seed=options.seed)
+            name = f"{setting}_{encoder.channels}_{options.answerer}_{options.seed}"
+            return train_qa(options.runs / name, config, reader, start)
+
         for setting in options.settings:
-            qa = QaConfig(
-                EncoderConfig(options.quantiser, channels, options.width),
-                setting,
-                epochs=options.epochs,
-                seed=options.seed,
-            )
-            folder = options.runs / f"{setting}_{channels}_{options.answerer}_{options.seed}"
-            rows += qa_rows(train_qa(folder, qa, reader), test)
+            # Both losses go on from where the reconstruction has been learnt.
+            start = trained("reconstruction", None, encoder) if setting == "both" else None
+            rows += qa_rows(trained(setting, start, encoder), test)
     return rows
+
+
+def _epochs(text: str) -> tuple[str, int]:
+    setting, _, number = text.partition("=")
+    if setting not in SETTINGS or not number.isdigit():
+        raise argparse.ArgumentTypeError(f"{text!r} is not SETTING=NUMBER, as kl=8")
+    return setting, int(number)
 
 
 def _without_folders(arguments: Sequence[str]) -> list[str]:
@@ -83,8 +98,14 @@ def _parse() -> argparse.Namespace:
     parser.add_argument("--answerer", choices=ANSWERERS, default="program")
     parser.add_argument("--quantiser", default="binary", help="of the encoder")
     parser.add_argument("--width", type=int, default=24, help="of the encoder's layers")
-    parser.add_argument("--epochs", type=int, default=16, help="of an encoder's training")
-    parser.add_argument("--reader-epochs", type=int, default=20, help="of the answerer's")
+    parser.add_argument(
+        "--epochs",
+        nargs="+",
+        type=_epochs,
+        default=[],
+        help=f"SETTING=NUMBER of an encoder's training, else {EPOCHS}",
+    )
+    parser.add_argument("--reader-epochs", type=int, default=14, help="of the answerer's")
     parser.add_argument("--threads", type=int, default=2, help="processor threads")
     parser.add_argument("--seed", type=int, default=0, help="of weights and batches")
     return parser.parse_args()

@@ -116,8 +116,8 @@ def test_images_are_asked_about_in_a_mirror_by_turns() -> None:
     read = reader(mirrored=(("dark", "bright"),))
     plain = reader()
     for step in range(2):
-        images, questions, *_ = plain.batches.at(step)
-        shown, told, *_ = read.batches.at(step)
+        _, images, questions, *_ = plain.batches.at(step)
+        _, shown, told, *_ = read.batches.at(step)
         if step == 0:
             assert torch.equal(shown, images) and torch.equal(told, questions)
         else:

@@ -177,6 +177,28 @@ class ProgramNetwork(nn.Module):
         return self._answer(["yes", "no"], torch.stack([shares, 1.0 - shares], dim=1))
 
 
+class SymbolicNetwork(nn.Module):
+    """Answers on the graph that a network holds most likely, as if it were certain.
+
+    Args:
+        network: reads the graph off images and executes programs on it.
+    """
+
+    def __init__(self, network: ProgramNetwork) -> None:
+        super().__init__()
+        self.network = network
+
+    def forward(self, images: Tensor, questions: Tensor, owners: Tensor) -> Tensor:
+        """See :meth:`ProgramNetwork.forward`."""
+        seen = self.network.sight(images)
+        graph = Seen(
+            things=seen.things.round(),
+            words={name: (s == s.amax(-1, keepdim=True)).float() for name, s in seen.words.items()},
+            beside=seen.beside.round(),
+        )
+        return self.network.execute(graph, questions, owners)
+
+
 def how_many(shares: Tensor) -> Tensor:
     """The distribution of how many of k independent events happen: (g, k) -> (g, k + 1)."""
     count = shares.shape[1]

@@ -7,7 +7,7 @@ term) and is then the same for all settings.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -126,7 +126,7 @@ class ReaderTrainer(TrainingRun[dict[str, float]]):
 
     def advance(self) -> dict[str, float]:
         """See :class:`TrainingRun`."""
-        images, questions, owners, answers = self.batches.at(self.step)
+        _, images, questions, owners, answers = self.batches.at(self.step)
         loss = functional.cross_entropy(self.answerer(images, questions, owners), answers)
         _descend(loss, self.answerer, self.optimizer, self.schedule)
         return {"likelihood": float(loss.detach())}
@@ -139,16 +139,26 @@ class QaTrainer(TrainingRun[dict[str, float]]):
         asked: what is shown and asked.
         config: the hyper-parameters.
         answerer: a trained one; it stays as it is, so that all settings are read by the same.
+        start: a trained encoder of the same kind to go on from; without one, from nothing.
     """
 
-    def __init__(self, asked: Asked, config: QaConfig, answerer: nn.Module) -> None:
+    def __init__(
+        self,
+        asked: Asked,
+        config: QaConfig,
+        answerer: nn.Module,
+        start: StateEncoder | None = None,
+    ) -> None:
         super().__init__(config, _steps(asked, config))
         self.alpha, self.beta = SETTINGS[config.setting]
         torch.manual_seed(config.seed)
         self.batches = _Batches(asked, config, config.reader.words)
         self.encoder = StateEncoder(config.encoder)
+        if start is not None:
+            self.encoder.load_state_dict(start.state_dict())
         self.answerer = answerer.eval().requires_grad_(False)
         self.optimizer, self.schedule = _optimizer(self.encoder, config, self.steps)
+        self._of_images: Tensor | None = None
 
     @property
     def networks(self) -> tuple[nn.Module]:
@@ -171,7 +181,7 @@ class QaTrainer(TrainingRun[dict[str, float]]):
 
     def advance(self) -> dict[str, float]:
         """See :class:`TrainingRun`."""
-        images, questions, owners, answers = self.batches.at(self.step)
+        index, images, questions, owners, answers = self.batches.at(self.step)
         with half_precision():
             features = self.encoder.encoder(images)
         quantised, _, own = self.encoder.quantiser(features.float())
@@ -183,7 +193,7 @@ class QaTrainer(TrainingRun[dict[str, float]]):
         told = {"error": float(error.detach())}
         if self.beta:
             # The likelihood of the answers is asked of what the code shows.
-            of_image = functional.log_softmax(self.answerer(images, questions, owners), 1)
+            of_image = self._read()[index]
             of_shown = functional.log_softmax(self.answerer(shown, questions, owners), 1)
             likelihood = functional.nll_loss(of_shown, answers)
             divergence = functional.kl_div(
@@ -196,6 +206,17 @@ class QaTrainer(TrainingRun[dict[str, float]]):
             }
         _descend(loss, self.encoder, self.optimizer, self.schedule)
         return told
+
+    @torch.no_grad()
+    def _read(self) -> Tensor:
+        """Log-probabilities (m, |Y|) of answers to all questions, read off the images; kept."""
+        if self._of_images is None:
+            read = [
+                self.answerer(values_of(images), questions, owners)
+                for images, questions, owners in self.batches.all()
+            ]
+            self._of_images = functional.log_softmax(torch.cat(read), 1)
+        return self._of_images
 
 
 class _Batches:
@@ -223,8 +244,8 @@ class _Batches:
             one, other = (words.index(word) for word in pair)
             self._in_mirror[[one, other]] = other, one
 
-    def at(self, step: int) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-        """Images, questions, owners and answers of a step."""
+    def at(self, step: int) -> tuple[Tensor, Tensor, Tensor, Tensor, Tensor]:
+        """Which questions are asked in a step, of what images, how, about which, and answers."""
         count = len(self.asked.images)
         epoch, place = divmod(step, -(-count // self.size))
         order = np.random.default_rng([self.seed, epoch]).permutation(count)
@@ -236,11 +257,20 @@ class _Batches:
         if (epoch + place) % self._turns:
             images, questions = images[:, :, ::-1].copy(), self._in_mirror[questions]
         return (
+            torch.from_numpy(index),
             values_of(images),
             torch.from_numpy(questions),
             torch.from_numpy(owners),
             torch.from_numpy(self.asked.answers[index]),
         )
+
+    def all(self) -> Iterator[tuple[NDArray[np.uint8], Tensor, Tensor]]:
+        """All images in turn with their questions and which of them each is about."""
+        for start in range(0, len(self.asked.images), self.size):
+            images = self.asked.images[start : start + self.size]
+            rows = slice(self._bounds[start], self._bounds[start + len(images)])
+            owners = torch.from_numpy(self.asked.owners[rows] - start)
+            yield images, torch.from_numpy(self.asked.questions[rows]), owners
 
 
 def _steps(asked: Asked, config: ReaderConfig | QaConfig) -> int:
