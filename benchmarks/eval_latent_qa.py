@@ -26,7 +26,7 @@ from perception_node.latent.qa_trainer import SETTINGS, QaConfig, QaTrainer, Rea
 from perception_node.latent.state_encoder import CHANNELS, EncoderConfig
 
 #: Passes over the images of each setting's training.
-EPOCHS: Final = {"reconstruction": 16, "both": 2, "kl": 8}
+EPOCHS: Final = {"reconstruction": 16, "both": 2, "kl": 6}
 
 
 def main() -> int:

@@ -74,7 +74,7 @@ def train_qa(
     """
     config = replace(config, reader=reader.config)
     begun = start.encoder if start else None
-    trainer = QaTrainer(reader.batches.asked, config, reader.answerer, begun)
+    trainer = QaTrainer(reader.batches.asked, config, reader.reader, begun)
     _run(trainer, folder, f"questions ({config.setting}, o = {config.encoder.channels})")
     return trainer
 
@@ -102,7 +102,7 @@ def reader_rows(reader: ReaderTrainer, test: ClevrSet) -> list[Row]:
     """What the answerer reads off the images themselves: as it is sure of it, and as a graph."""
     answerer, seconds = reader.answerer, np.round(reader.seconds)
     told = f"{seconds} s of training on {len(reader.batches.asked.questions)} questions"
-    rows = [_answers_row("images", "from images", None, answerer, reader.config, test, note=told)]
+    rows = [_answers_row("images", "from images", None, reader.reader, reader.config, test, told)]
     if isinstance(answerer, ProgramNetwork):
         name = "symbolic execution on the graph read off images"
         graph = SymbolicNetwork(answerer)
@@ -117,7 +117,7 @@ def qa_rows(trainer: QaTrainer, test: ClevrSet) -> list[Row]:
     full = config.encoder.channels == 64
     accuracy, error, bound, error_bound = TABLE[config.setting]
     found = reconstruction_error(trainer.encoder.eval(), test.images)
-    row = _answers_row(label, "from codes", trainer.encoder, trainer.answerer, config.reader, test)
+    row = _answers_row(label, "from codes", trainer.encoder, trainer.reader, config.reader, test)
     if full:
         row = replace(row, required=bound, thesis=accuracy)
     told = f"{config.epochs} epochs, {np.round(trainer.seconds)} s of training"

@@ -15,7 +15,7 @@ from latent.clevr.programs import tokens_of
 from latent.clevr.questions import FAMILIES, Asker, Question, draw_question
 from latent.clevr.things import ATTRIBUTES, RELATIONS, Scene, random_scene, related
 
-from perception_node.latent.programs import ProgramNetwork, how_many
+from perception_node.latent.programs import ProgramNetwork, SymbolicNetwork, how_many
 from perception_node.latent.sight import PLACES, Seen
 
 WORDS = (
@@ -107,6 +107,24 @@ def test_answers_teach_what_places_show() -> None:
     torch.nn.functional.cross_entropy(logits, right).backward()
     still = [name for name, item in net.named_parameters() if item.grad is None]
     assert not still
+
+
+def test_a_graph_is_what_is_most_likely() -> None:
+    rng = np.random.default_rng(4)
+    scene = random_scene(rng)
+    questions = [q for name in FAMILIES if (q := draw_question(name, scene, rng)) is not None]
+    certain, net = seen_exactly([scene]), network()
+    unsure = Seen(
+        things=0.2 + 0.6 * certain.things,
+        words={name: 0.1 + 0.5 * shares for name, shares in certain.words.items()},
+        beside=0.2 + 0.6 * certain.beside,
+    )
+    owners = torch.zeros(len(questions), dtype=torch.int64)
+    with torch.no_grad():
+        right = net.execute(certain, numbers_of(questions), owners)
+        net.sight.forward = lambda _images: unsure  # type: ignore[method-assign]
+        read = SymbolicNetwork(net)(torch.zeros(1, 3, 128, 128), numbers_of(questions), owners)
+    assert torch.allclose(read, right, atol=1e-4)
 
 
 @given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=6))

@@ -10,7 +10,7 @@ import pytest
 import torch
 
 from perception_node.errors import WeightsError
-from perception_node.latent.answering import ANSWERERS, READ_PROGRAMS
+from perception_node.latent.answering import ANSWERERS, READ_PROGRAMS, BothWays
 from perception_node.latent.qa_trainer import (
     SETTINGS,
     Asked,
@@ -48,7 +48,7 @@ def reader(**changes: object) -> ReaderTrainer:
 def trainer_of(**changes: object) -> QaTrainer:
     read = reader()
     config = QaConfig(SMALL, reader=read.config, batch=2, **changes)  # type: ignore[arg-type]
-    return QaTrainer(read.batches.asked, config, read.answerer)
+    return QaTrainer(read.batches.asked, config, read.reader)
 
 
 @pytest.mark.parametrize("name", sorted(ANSWERERS.keys() - READ_PROGRAMS))
@@ -67,7 +67,7 @@ def test_a_question_is_answered_alike_whatever_is_asked_beside_it(name: str) -> 
 @pytest.mark.parametrize("setting", SETTINGS)
 def test_each_setting_trains_what_it_names(setting: str) -> None:
     trainer = trainer_of(setting=setting, epochs=1)
-    before = [parameter.clone() for parameter in trainer.answerer.parameters()]
+    before = [parameter.clone() for parameter in trainer.reader.parameters()]
     told: list[dict[str, float]] = []
 
     def on_step(_step: int, losses: dict[str, float]) -> bool:
@@ -82,7 +82,20 @@ def test_each_setting_trains_what_it_names(setting: str) -> None:
         p.grad is not None and bool(p.grad.any()) for p in trainer.encoder.decoder.parameters()
     ]
     assert any(moved) and alpha + beta > 0.0
-    assert all(map(torch.equal, before, trainer.answerer.parameters()))
+    assert all(map(torch.equal, before, trainer.reader.parameters()))
+
+
+def test_both_ways_are_held_equally_likely() -> None:
+    torch.manual_seed(0)
+    one = ANSWERERS["film"](WORDS, ANSWERS).eval()
+    images, owners = torch.rand(2, 3, 128, 128), torch.tensor([0, 1])
+    questions, swapped = torch.tensor([[1, 2], [1, 3]]), torch.tensor([[1, 3], [1, 2]])
+    both = BothWays(one, WORDS, (("dark", "bright"),))(images, questions, owners)
+    ways = one(images, questions, owners), one(images.flip(3), swapped, owners)
+    expected = (ways[0].softmax(1) + ways[1].softmax(1)) / 2.0
+    assert torch.allclose(both.exp(), expected, atol=1e-6)
+    alone = BothWays(one, WORDS, ())(images, questions, owners)
+    assert torch.allclose(alone.exp(), ways[0].softmax(1), atol=1e-6)
 
 
 def test_a_training_goes_on_from_its_checkpoint_as_if_it_had_not_stopped(tmp_path: Path) -> None:

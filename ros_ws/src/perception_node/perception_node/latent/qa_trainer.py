@@ -19,7 +19,7 @@ from torch.nn import functional
 
 from perception_node.training.run import Stateful, TrainingRun
 
-from .answering import ANSWERERS
+from .answering import ANSWERERS, BothWays, words_in_mirror
 from .networks import half_precision
 from .state_encoder import EncoderConfig, StateEncoder, values_of
 
@@ -103,6 +103,7 @@ class ReaderTrainer(TrainingRun[dict[str, float]]):
         torch.manual_seed(config.seed)
         self.batches = _Batches(asked, config, config.words, config.mirrored)
         self.answerer = ANSWERERS[config.answerer](config.words, config.answers)
+        self.reader = BothWays(self.answerer, config.words, config.mirrored)
         self.optimizer, self.schedule = _optimizer(self.answerer, config, self.steps)
 
     @property
@@ -138,7 +139,7 @@ class QaTrainer(TrainingRun[dict[str, float]]):
     Args:
         asked: what is shown and asked.
         config: the hyper-parameters.
-        answerer: a trained one; it stays as it is, so that all settings are read by the same.
+        reader: a trained one; it stays as it is, so that all settings are read by the same.
         start: a trained encoder of the same kind to go on from; without one, from nothing.
     """
 
@@ -146,7 +147,7 @@ class QaTrainer(TrainingRun[dict[str, float]]):
         self,
         asked: Asked,
         config: QaConfig,
-        answerer: nn.Module,
+        reader: BothWays,
         start: StateEncoder | None = None,
     ) -> None:
         super().__init__(config, _steps(asked, config))
@@ -156,7 +157,7 @@ class QaTrainer(TrainingRun[dict[str, float]]):
         self.encoder = StateEncoder(config.encoder)
         if start is not None:
             self.encoder.load_state_dict(start.state_dict())
-        self.answerer = answerer.eval().requires_grad_(False)
+        self.reader = reader.eval().requires_grad_(False)
         self.optimizer, self.schedule = _optimizer(self.encoder, config, self.steps)
         self._of_images: Tensor | None = None
 
@@ -194,7 +195,8 @@ class QaTrainer(TrainingRun[dict[str, float]]):
         if self.beta:
             # The likelihood of the answers is asked of what the code shows.
             of_image = self._read()[index]
-            of_shown = functional.log_softmax(self.answerer(shown, questions, owners), 1)
+            way = self.reader.ways[self.step % len(self.reader.ways)]
+            of_shown = self.reader.one_way(shown, questions, owners, way)
             likelihood = functional.nll_loss(of_shown, answers)
             divergence = functional.kl_div(
                 of_shown, of_image, reduction="batchmean", log_target=True
@@ -212,10 +214,10 @@ class QaTrainer(TrainingRun[dict[str, float]]):
         """Log-probabilities (m, |Y|) of answers to all questions, read off the images; kept."""
         if self._of_images is None:
             read = [
-                self.answerer(values_of(images), questions, owners)
+                self.reader(values_of(images), questions, owners)
                 for images, questions, owners in self.batches.all()
             ]
-            self._of_images = functional.log_softmax(torch.cat(read), 1)
+            self._of_images = torch.cat(read)
         return self._of_images
 
 
@@ -238,11 +240,8 @@ class _Batches:
     ) -> None:
         self.asked, self.size, self.seed = asked, config.batch, config.seed
         self._bounds = np.searchsorted(asked.owners, np.arange(len(asked.images) + 1))
-        self._in_mirror = np.arange(len(words))
+        self._in_mirror = words_in_mirror(words, mirrored).numpy()
         self._turns = 2 if mirrored else 1
-        for pair in mirrored:
-            one, other = (words.index(word) for word in pair)
-            self._in_mirror[[one, other]] = other, one
 
     def at(self, step: int) -> tuple[Tensor, Tensor, Tensor, Tensor, Tensor]:
         """Which questions are asked in a step, of what images, how, about which, and answers."""
