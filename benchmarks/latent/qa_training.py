@@ -121,7 +121,7 @@ def qa_rows(trainer: QaTrainer, test: ClevrSet) -> list[Row]:
     if full:
         row = replace(row, required=bound, thesis=accuracy)
     told = f"{config.epochs} epochs, {np.round(trainer.seconds)} s of training"
-    if config.setting == "both":
+    if config.setting != "reconstruction":
         told += ", going on from reconstruction"
     return [
         row,
