@@ -26,7 +26,9 @@ from perception_node.latent.qa_trainer import SETTINGS, QaConfig, QaTrainer, Rea
 from perception_node.latent.state_encoder import CHANNELS, EncoderConfig
 
 #: Passes over the images of each setting's training.
-EPOCHS: Final = {"reconstruction": 16, "both": 2, "kl": 2}
+EPOCHS: Final = {"reconstruction": 16, "both": 1, "kl": 1}
+#: Peak of the learning rate of a training that goes on from another one.
+FURTHER_RATE: Final = 3e-4
 
 
 def main() -> int:
@@ -61,7 +63,13 @@ def measure(options: argparse.Namespace) -> list[Row]:
 
         def trained(setting: str, start: QaTrainer | None, encoder: EncoderConfig) -> QaTrainer:
             epochs = EPOCHS | dict(options.epochs)
-            config = QaConfig(encoder, setting, epochs=epochs[setting], seed=options.seed)
+            config = QaConfig(
+                encoder,
+                setting,
+                epochs=epochs[setting],
+                learning_rate=FURTHER_RATE if start else QaConfig.learning_rate,
+                seed=options.seed,
+            )
             name = f"{setting}_{encoder.channels}_{options.answerer}_{options.seed}"
             return train_qa(options.runs / name, config, reader, start)
 
