@@ -9,19 +9,26 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Final
 
 import torch
 from latent.blocks_world import DataError
 from latent.clevr.dataset import read_clevr
-from latent.qa_training import baseline_rows, qa_rows, train_qa
+from latent.qa_training import baseline_rows, qa_rows, reader_rows, train_qa, train_reader
 from latent.trainings import StoppedError
 from results_file import Row, print_rows, write_result
 
 from perception_node.errors import PerceptionError
 from perception_node.latent.answering import ANSWERERS
-from perception_node.latent.qa_trainer import SETTINGS, QaConfig
+from perception_node.latent.qa_trainer import SETTINGS, QaConfig, QaTrainer, ReaderConfig
 from perception_node.latent.state_encoder import CHANNELS, EncoderConfig
+
+#: Passes over the images of each setting's training.
+EPOCHS: Final = {"reconstruction": 16, "both": 1, "kl": 1}
+#: Peak of the learning rate of a training that goes on from another one.
+FURTHER_RATE: Final = 3e-4
 
 
 def main() -> int:
@@ -38,7 +45,8 @@ def main() -> int:
         print("stopped; the same command goes on from there")
         return 130
     print_rows(rows)
-    command = "make eval-latent-qa" + (f' ARGS="{" ".join(sys.argv[1:])}"' if sys.argv[1:] else "")
+    told = _without_folders(sys.argv[1:])
+    command = "make eval-latent-qa" + (f' ARGS="{" ".join(told)}"' if told else "")
     print(write_result("latent_qa", command, rows, time.perf_counter() - begun))
     return 0
 
@@ -47,18 +55,45 @@ def measure(options: argparse.Namespace) -> list[Row]:
     """Trains and measures every setting and size that was asked for."""
     train, test = (read_clevr(options.data / f"clevr_{name}") for name in ("train", "test"))
     rows = baseline_rows(train, test)
+    config = ReaderConfig(options.answerer, epochs=options.reader_epochs, seed=options.seed)
+    reader = train_reader(options.runs / f"reader_{options.answerer}_{options.seed}", train, config)
+    rows += reader_rows(reader, test)
     for channels in options.channels:
-        for setting in options.settings:
+        encoder = EncoderConfig(options.quantiser, channels, options.width)
+
+        def trained(setting: str, start: QaTrainer | None, encoder: EncoderConfig) -> QaTrainer:
+            epochs = EPOCHS | dict(options.epochs)
             config = QaConfig(
-                EncoderConfig(options.quantiser, channels, options.width),
+                encoder,
                 setting,
-                options.answerer,
-                epochs=options.epochs,
+                epochs=epochs[setting],
+                learning_rate=FURTHER_RATE if start else QaConfig.learning_rate,
                 seed=options.seed,
             )
-            folder = options.runs / f"{setting}_{channels}_{options.answerer}_{options.seed}"
-            rows += qa_rows(train_qa(folder, train, config), test)
+            name = f"{setting}_{encoder.channels}_{options.answerer}_{options.seed}"
+            return train_qa(options.runs / name, config, reader, start)
+
+        for setting in options.settings:
+            # The reader cannot be asked of what shows nothing yet: the others go on from there.
+            alone = setting == "reconstruction"
+            start = None if alone else trained("reconstruction", None, encoder)
+            rows += qa_rows(trained(setting, start, encoder), test)
     return rows
+
+
+def _epochs(text: str) -> tuple[str, int]:
+    setting, _, number = text.partition("=")
+    if setting not in SETTINGS or not number.isdigit():
+        raise argparse.ArgumentTypeError(f"{text!r} is not SETTING=NUMBER, as kl=8")
+    return setting, int(number)
+
+
+def _without_folders(arguments: Sequence[str]) -> list[str]:
+    """What a result depends on; not where this machine keeps its data, nor how many threads."""
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    for name in ("--data", "--runs", "--threads"):
+        parser.add_argument(name)
+    return parser.parse_known_args(arguments)[1]
 
 
 def _parse() -> argparse.Namespace:
@@ -72,7 +107,14 @@ def _parse() -> argparse.Namespace:
     parser.add_argument("--answerer", choices=ANSWERERS, default="program")
     parser.add_argument("--quantiser", default="binary", help="of the encoder")
     parser.add_argument("--width", type=int, default=24, help="of the encoder's layers")
-    parser.add_argument("--epochs", type=int, default=30, help="passes over the images")
+    parser.add_argument(
+        "--epochs",
+        nargs="+",
+        type=_epochs,
+        default=[],
+        help=f"SETTING=NUMBER of an encoder's training, else {EPOCHS}",
+    )
+    parser.add_argument("--reader-epochs", type=int, default=14, help="of the answerer's")
     parser.add_argument("--threads", type=int, default=2, help="processor threads")
     parser.add_argument("--seed", type=int, default=0, help="of weights and batches")
     return parser.parse_args()

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from latent.blocks_world import DataError, SetConfig, render_set
-from latent.clevr.dataset import ClevrConfig, render_clevr
+from latent.clevr.dataset import ClevrConfig, ask_more, render_clevr
 
 #: Of the pictures that only evaluation sees; those of training have seed 0.
 TEST_SEED = 1000
@@ -22,6 +22,7 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=Path("data/latent"), help="folder to write")
     parser.add_argument("--limit", type=int, help="states of each set, for a trial")
     parser.add_argument("--scenes", type=int, default=5000, help="with questions, for training")
+    parser.add_argument("--rounds", type=int, default=3, help="of questions about each of them")
     options = parser.parse_args()
     sets = {
         "train_5": SetConfig(5, 4, 0),
@@ -39,6 +40,7 @@ def main() -> int:
                 "clevr_test": ClevrConfig(tests, FIRST_TEST_SCENE, TEST_SEED),
             }.items()
         )
+        done = done and ask_more(options.out / "clevr_train", options.rounds)
     except DataError as error:
         print(f"cannot render: {error}", file=sys.stderr)
         return 2

@@ -9,8 +9,11 @@ from typing import Final
 
 import numpy as np
 from results_file import Row
+from torch import nn
 
-from perception_node.latent.qa_trainer import QaConfig, QaTrainer
+from perception_node.latent.programs import ProgramNetwork, SymbolicNetwork
+from perception_node.latent.qa_trainer import QaConfig, QaTrainer, ReaderConfig, ReaderTrainer
+from perception_node.latent.state_encoder import StateEncoder
 
 from .clevr.asked import (
     Vocabulary,
@@ -34,8 +37,8 @@ TABLE: Final[dict[str, tuple[float, float, str | None, str | None]]] = {
 }
 
 
-def train_qa(folder: Path, train: ClevrSet, config: QaConfig) -> QaTrainer:
-    """A trained run of a folder, gone on with or taken as it is.
+def train_reader(folder: Path, train: ClevrSet, config: ReaderConfig) -> ReaderTrainer:
+    """A trained answerer of a folder, gone on with or taken as it is.
 
     Raises:
         StoppedError: by Ctrl-C.
@@ -43,16 +46,46 @@ def train_qa(folder: Path, train: ClevrSet, config: QaConfig) -> QaTrainer:
     """
     told = told_to(config.answerer)
     vocabulary = Vocabulary.of(train, told)
-    config = replace(config, words=vocabulary.words, answers=vocabulary.answers)
-    trainer = QaTrainer(asked_of(train, vocabulary, told), config)
+    mirrored = tuple(
+        (one, one.replace("left", "right"))
+        for one in vocabulary.words
+        if "left" in one and one.replace("left", "right") in vocabulary.words
+    )
+    config = replace(config, words=vocabulary.words, answers=vocabulary.answers, mirrored=mirrored)
+    trainer = ReaderTrainer(asked_of(train, vocabulary, told), config)
+    _run(trainer, folder, f"answerer ({config.answerer})")
+    return trainer
+
+
+def train_qa(
+    folder: Path, config: QaConfig, reader: ReaderTrainer, start: QaTrainer | None = None
+) -> QaTrainer:
+    """A trained state encoder of a folder, gone on with or taken as it is.
+
+    Args:
+        folder: where it is kept.
+        config: all but the answerer's.
+        reader: the trained answerer, which all settings share.
+        start: whose encoder it goes on from.
+
+    Raises:
+        StoppedError: by Ctrl-C.
+        WeightsError: the folder holds another run.
+    """
+    config = replace(config, reader=reader.config)
+    begun = start.encoder if start else None
+    trainer = QaTrainer(reader.batches.asked, config, reader.reader, begun)
+    _run(trainer, folder, f"questions ({config.setting}, o = {config.encoder.channels})")
+    return trainer
+
+
+def _run(trainer: ReaderTrainer | QaTrainer, folder: Path, title: str) -> None:
     checkpoint = folder / CHECKPOINT
     if checkpoint.exists():
         trainer.resume(checkpoint)
-    title = f"questions ({config.setting}, o = {config.encoder.channels})"
     with progress(title, trainer.steps, trainer.step, folder / "log.txt") as shown:
         if not trainer.run(shown.show, checkpoint):
             raise StoppedError
-    return trainer
 
 
 def baseline_rows(train: ClevrSet, test: ClevrSet) -> list[Row]:
@@ -65,29 +98,53 @@ def baseline_rows(train: ClevrSet, test: ClevrSet) -> list[Row]:
     ]  # fmt: skip
 
 
+def reader_rows(reader: ReaderTrainer, test: ClevrSet) -> list[Row]:
+    """What the answerer reads off the images themselves: as it is sure of it, and as a graph."""
+    answerer, seconds = reader.answerer, np.round(reader.seconds)
+    told = f"{seconds} s of training on {len(reader.batches.asked.questions)} questions"
+    rows = [_answers_row("images", "from images", None, reader.reader, reader.config, test, told)]
+    if isinstance(answerer, ProgramNetwork):
+        name = "symbolic execution on the graph read off images"
+        graph = SymbolicNetwork(answerer)
+        rows.append(_answers_row("images", name, None, graph, reader.config, test))
+    return rows
+
+
 def qa_rows(trainer: QaTrainer, test: ClevrSet) -> list[Row]:
     """A line of Table 4.1, with the accuracy of each family in its note."""
     config = trainer.config
-    vocabulary = Vocabulary(config.words, config.answers)
-    asked, questions = asked_of(test, vocabulary, told_to(config.answerer)), all_questions(test)
     label = f"{config.setting}, o = {config.encoder.channels}"
     full = config.encoder.channels == 64
     accuracy, error, bound, error_bound = TABLE[config.setting]
-    rows = []
-    for what, encoder in (("from codes", trainer.encoder), ("from images", None)):
-        numbers = answered(encoder, trainer.answerer, asked)
-        given = [vocabulary.answers[number] for number in numbers]
-        share, families = shares_right(given, questions)
-        rows.append(
-            Row(label, f"QA accuracy, {what} ({config.answerer})", share, "", len(questions),
-                required=bound if encoder and full else None,
-                thesis=accuracy if encoder and full else None,
-                note="; ".join(f"{name} {value:.3f}" for name, value in families.items()))
-        )  # fmt: skip
     found = reconstruction_error(trainer.encoder.eval(), test.images)
-    rows.append(
+    row = _answers_row(label, "from codes", trainer.encoder, trainer.reader, config.reader, test)
+    if full:
+        row = replace(row, required=bound, thesis=accuracy)
+    told = f"{config.epochs} epochs, {np.round(trainer.seconds)} s of training"
+    if config.setting != "reconstruction":
+        told += ", going on from reconstruction"
+    return [
+        row,
         Row(label, "reconstruction error", found, "", len(test.images),
-            required=error_bound if full else None, thesis=error if full else None,
-            note=f"{np.round(trainer.seconds)} s of training")
-    )  # fmt: skip
-    return rows
+            required=error_bound if full else None, thesis=error if full else None, note=told),
+    ]  # fmt: skip
+
+
+def _answers_row(
+    label: str,
+    what: str,
+    encoder: StateEncoder | None,
+    answerer: nn.Module,
+    config: ReaderConfig,
+    test: ClevrSet,
+    note: str = "",
+) -> Row:
+    vocabulary = Vocabulary(config.words, config.answers)
+    asked, questions = asked_of(test, vocabulary, told_to(config.answerer)), all_questions(test)
+    numbers = answered(encoder, answerer, asked)
+    share, families = shares_right([vocabulary.answers[n] for n in numbers], questions)
+    told = [f"{name} {value:.3f}" for name, value in families.items()]
+    metric = f"QA accuracy, {what} ({config.answerer})"
+    return Row(
+        label, metric, share, "", len(questions), note="; ".join([*told, note] if note else told)
+    )

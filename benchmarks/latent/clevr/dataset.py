@@ -3,12 +3,14 @@
 
 A folder holds, for each shard, ``images_NNNN.npz`` with images (n, 128, 128, 3) uint8 and
 ``questions_NNNN.json``: for each scene its things, and its questions. Shards are written whole, the
-questions last; what is there is not made again.
+questions last; what is there is not made again. ``more_NNNN.json`` holds further questions about
+the same scenes, asked in later rounds.
 """
 
 from __future__ import annotations
 
 import json
+from collections import Counter
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -105,6 +107,58 @@ def _shard(
     partial.rename(told)
 
 
+def ask_more(folder: Path, rounds: int) -> bool:
+    """Asks about the scenes of a complete set again; whether done, or Ctrl-C ended it.
+
+    Args:
+        folder: of the set.
+        rounds: how often each scene is asked about, the questions that it came with being one.
+
+    Raises:
+        DataError: the set was asked in another number of rounds.
+    """
+    config = json.loads((folder / "config.json").read_text())
+    asker = Asker()
+    try:
+        for path in tqdm(sorted(folder.glob("questions_*.json")), desc=f"{folder}, more questions"):
+            first = config["first"] + SHARD * int(path.stem.split("_")[1])
+            _ask_shard_again(path, first, config["seed"], rounds, asker)
+    except KeyboardInterrupt:
+        return False
+    return True
+
+
+def _ask_shard_again(path: Path, first: int, seed: int, rounds: int, asker: Asker) -> None:
+    more = _more_of(path)
+    if more.exists():
+        kept = json.loads(more.read_text())
+        if kept["rounds"] != rounds:
+            raise DataError(
+                f"{more} was asked in {kept['rounds']} rounds, not {rounds}; ask as often, or "
+                "delete the files more_*.json"
+            )
+        asker.answers = {name: Counter(counts) for name, counts in kept["answers"].items()}
+        return
+    asked: list[list[dict[str, Any]]] = []
+    for number, entry in enumerate(json.loads(path.read_text()), first):
+        scene = tuple(map(_thing_of, entry["things"]))
+        known = {tuple(item["words"]) for item in entry["questions"]}
+        asked.append([])
+        for turn in range(1, rounds):
+            for question in asker.ask(scene, np.random.default_rng([seed, number, turn])):
+                if question.words not in known:
+                    known.add(question.words)
+                    asked[-1].append(asdict(question))
+    partial = more.with_name("more.part")
+    kept = {"rounds": rounds, "answers": asker.answers, "questions": asked}
+    partial.write_text(json.dumps(kept))
+    partial.rename(more)
+
+
+def _more_of(questions: Path) -> Path:
+    return questions.with_name(questions.name.replace("questions", "more"))
+
+
 def picture_of(world: World, scene: Scene, rng: np.random.Generator) -> NDArray[np.uint8]:
     """A picture of a scene, shape (128, 128, 3), its camera and light a little off."""
     for number, thing in enumerate(scene):
@@ -145,7 +199,12 @@ def read_clevr(folder: Path) -> ClevrSet:
         with np.load(path) as file:
             images.append(file["images"])
         told = path.with_name(path.name.replace("images", "questions")).with_suffix(".json")
-        entries += json.loads(told.read_text())
+        read = json.loads(told.read_text())
+        if _more_of(told).exists():
+            more = json.loads(_more_of(told).read_text())["questions"]
+            for entry, items in zip(read, more):
+                entry["questions"] += items
+        entries += read
     return ClevrSet(
         np.concatenate(images),
         tuple(tuple(map(_thing_of, entry["things"])) for entry in entries),

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,8 @@ from latent.blocks_world import (
     read_set,
     render_set,
 )
-from latent.clevr.programs import IllPosedError, Step, execute
+from latent.clevr.dataset import ask_more, question_of
+from latent.clevr.programs import IllPosedError, Step, answer_of, execute
 from latent.clevr.questions import FAMILIES, Asker, draw_question
 from latent.clevr.things import ATTRIBUTES, RELATIONS, Thing, random_scene, related
 
@@ -101,6 +103,35 @@ def test_answers_are_balanced_and_every_family_is_asked() -> None:
         yes, no = asker.answers[family]["yes"], asker.answers[family]["no"]
         assert min(yes, no) > 0.7 * max(yes, no)
     assert all(sum(counts.values()) > 0 for counts in asker.answers.values())
+
+
+def test_scenes_are_asked_about_again_alike_whether_it_was_stopped_or_not(tmp_path: Path) -> None:
+    scenes = [random_scene(np.random.default_rng(number)) for number in range(4)]
+    for name in ("whole", "resumed"):
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / "config.json").write_text('{"scenes": 400, "first": 0, "seed": 5}')
+        for shard in range(2):
+            kept = [
+                {"things": [asdict(thing) for thing in scene], "questions": []}
+                for scene in scenes[2 * shard : 2 * shard + 2]
+            ]
+            (folder / f"questions_{shard:04d}.json").write_text(json.dumps(kept))
+        assert ask_more(folder, rounds=3)
+    (tmp_path / "resumed" / "more_0001.json").unlink()
+    assert ask_more(tmp_path / "resumed", rounds=3)
+    for shard in range(2):
+        one, other = (
+            json.loads((tmp_path / name / f"more_{shard:04d}.json").read_text())
+            for name in ("whole", "resumed")
+        )
+        assert one == other
+        for scene, items in zip(scenes[2 * shard :], one["questions"]):
+            asked = [question_of(item) for item in items]
+            assert len({item.words for item in asked}) == len(asked) > len(FAMILIES)
+            assert all(answer_of(execute(item.program, scene)) == item.answer for item in asked)
+    with pytest.raises(DataError, match="asked in 3 rounds, not 2"):
+        ask_more(tmp_path / "whole", rounds=2)
 
 
 def test_a_question_about_an_attribute_does_not_tell_it() -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 import pytest
@@ -12,9 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from latent.clevr.programs import tokens_of
 from latent.clevr.questions import FAMILIES, Asker, Question, draw_question
-from latent.clevr.things import ATTRIBUTES, RELATIONS, Scene, random_scene
+from latent.clevr.things import ATTRIBUTES, RELATIONS, Scene, random_scene, related
 
-from perception_node.latent.programs import ProgramNetwork, Seen
+from perception_node.latent.programs import ProgramNetwork, SymbolicNetwork, how_many
+from perception_node.latent.sight import PLACES, Seen
 
 WORDS = (
     "",
@@ -24,9 +26,6 @@ WORDS = (
     *(f"{function} {name}" for function in ("query", "same") for name in ATTRIBUTES),
 )
 ANSWERS = ("no", "yes", *map(str, range(7)), *(w for words in ATTRIBUTES.values() for w in words))
-#: Of those that speak of no relation, whose answers need not be learnt.
-PLAIN = [name for name in FAMILIES if "hop" not in name and name != "and"]
-PLACES = 9
 
 
 def network() -> ProgramNetwork:
@@ -40,7 +39,7 @@ def numbers_of(questions: Sequence[Question]) -> torch.Tensor:
     return torch.tensor([row + [0] * (longest - len(row)) for row in rows])
 
 
-def seen_exactly(net: ProgramNetwork, scenes: Sequence[Scene]) -> Seen:
+def seen_exactly(scenes: Sequence[Scene]) -> Seen:
     """Things at the first places, each of which shows what its thing is like, beyond doubt."""
     things = torch.zeros(len(scenes), PLACES)
     words = {name: torch.full((len(scenes), PLACES, len(v)), 0.1) for name, v in ATTRIBUTES.items()}
@@ -50,12 +49,16 @@ def seen_exactly(net: ProgramNetwork, scenes: Sequence[Scene]) -> Seen:
             for name, values in ATTRIBUTES.items():
                 words[name][number, place] = 0.0
                 words[name][number, place, sorted(values).index(getattr(thing, name))] = 1.0
-    features = torch.rand(len(scenes), PLACES, net.here.in_features)
-    return Seen(features, things, words, net.here(features))
+    beside = torch.zeros(len(scenes), len(RELATIONS), PLACES, PLACES)
+    for number, scene in enumerate(scenes):
+        for row, relation in enumerate(sorted(RELATIONS)):
+            for anchor in range(len(scene)):
+                beside[number, row, list(related(scene, relation, anchor)), anchor] = 1.0
+    return Seen(things, words, beside)
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.integers(0, 10_000), st.sampled_from(PLAIN))
+@given(st.integers(0, 10_000), st.sampled_from(sorted(FAMILIES)))
 def test_what_is_seen_exactly_is_answered_rightly(seed: int, family: str) -> None:
     rng = np.random.default_rng(seed)
     scene = random_scene(rng)
@@ -66,7 +69,7 @@ def test_what_is_seen_exactly_is_answered_rightly(seed: int, family: str) -> Non
     net = network()
     owners = torch.zeros(len(questions), dtype=torch.int64)
     with torch.no_grad():
-        logits = net.execute(seen_exactly(net, [scene]), numbers_of(questions), owners)
+        logits = net.execute(seen_exactly([scene]), numbers_of(questions), owners)
     given_answers = [ANSWERS[number] for number in logits.argmax(1)]
     assert given_answers == [item.answer for item in questions]
 
@@ -104,3 +107,31 @@ def test_answers_teach_what_places_show() -> None:
     torch.nn.functional.cross_entropy(logits, right).backward()
     still = [name for name, item in net.named_parameters() if item.grad is None]
     assert not still
+
+
+def test_a_graph_is_what_is_most_likely() -> None:
+    rng = np.random.default_rng(4)
+    scene = random_scene(rng)
+    questions = [q for name in FAMILIES if (q := draw_question(name, scene, rng)) is not None]
+    certain, net = seen_exactly([scene]), network()
+    unsure = Seen(
+        things=0.2 + 0.6 * certain.things,
+        words={name: 0.1 + 0.5 * shares for name, shares in certain.words.items()},
+        beside=0.2 + 0.6 * certain.beside,
+    )
+    owners = torch.zeros(len(questions), dtype=torch.int64)
+    with torch.no_grad():
+        right = net.execute(certain, numbers_of(questions), owners)
+        net.sight.register_forward_hook(lambda *_: unsure)
+        read = SymbolicNetwork(net)(torch.zeros(1, 3, 128, 128), numbers_of(questions), owners)
+    assert torch.allclose(read, right, atol=1e-4)
+
+
+@given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=6))
+def test_numbers_are_distributed_as_by_all_cases(shares: list[float]) -> None:
+    expected = np.zeros(len(shares) + 1)
+    for case in product((0, 1), repeat=len(shares)):
+        chances = [share if happens else 1.0 - share for share, happens in zip(shares, case)]
+        expected[sum(case)] += np.prod(chances)
+    numbers = how_many(torch.tensor([shares], dtype=torch.float64))
+    assert np.allclose(numbers[0].numpy(), expected, atol=1e-9)

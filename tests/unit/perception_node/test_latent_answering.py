@@ -10,8 +10,15 @@ import pytest
 import torch
 
 from perception_node.errors import WeightsError
-from perception_node.latent.answering import ANSWERERS, READ_PROGRAMS
-from perception_node.latent.qa_trainer import SETTINGS, Asked, QaConfig, QaTrainer
+from perception_node.latent.answering import ANSWERERS, READ_PROGRAMS, BothWays
+from perception_node.latent.qa_trainer import (
+    SETTINGS,
+    Asked,
+    QaConfig,
+    QaTrainer,
+    ReaderConfig,
+    ReaderTrainer,
+)
 from perception_node.latent.state_encoder import EncoderConfig
 
 SMALL = EncoderConfig(width=4)
@@ -30,10 +37,18 @@ def asked(images: int = 4) -> Asked:
     return Asked(pictures.astype(np.uint8), questions, owners, answers)
 
 
-def config(**changes: object) -> QaConfig:
-    words, answers = ("", "is", "dark", "bright"), ("no", "yes")
-    told = {"words": words, "answers": answers, "answerer": "film", "batch": 2, **changes}
-    return QaConfig(SMALL, **told)  # type: ignore[arg-type]
+WORDS, ANSWERS = ("", "is", "dark", "bright"), ("no", "yes")
+
+
+def reader(**changes: object) -> ReaderTrainer:
+    told = {"words": WORDS, "answers": ANSWERS, "answerer": "film", "batch": 2, "epochs": 1}
+    return ReaderTrainer(asked(), ReaderConfig(**{**told, **changes}))  # type: ignore[arg-type]
+
+
+def trainer_of(**changes: object) -> QaTrainer:
+    read = reader()
+    config = QaConfig(SMALL, reader=read.config, batch=2, **changes)  # type: ignore[arg-type]
+    return QaTrainer(read.batches.asked, config, read.reader)
 
 
 @pytest.mark.parametrize("name", sorted(ANSWERERS.keys() - READ_PROGRAMS))
@@ -51,7 +66,8 @@ def test_a_question_is_answered_alike_whatever_is_asked_beside_it(name: str) -> 
 
 @pytest.mark.parametrize("setting", SETTINGS)
 def test_each_setting_trains_what_it_names(setting: str) -> None:
-    trainer = QaTrainer(asked(), config(setting=setting, epochs=1))
+    trainer = trainer_of(setting=setting, epochs=1)
+    before = [parameter.clone() for parameter in trainer.reader.parameters()]
     told: list[dict[str, float]] = []
 
     def on_step(_step: int, losses: dict[str, float]) -> bool:
@@ -61,23 +77,63 @@ def test_each_setting_trains_what_it_names(setting: str) -> None:
     assert trainer.run(on_step)
     assert trainer.step == 2 and len(told) == 2
     alpha, beta = SETTINGS[setting]
-    assert (told[0]["divergence"] > 0.0) == (beta > 0.0)
+    assert (told[0].get("divergence", 0.0) > 0.0) == (beta > 0.0)
     moved = [
         p.grad is not None and bool(p.grad.any()) for p in trainer.encoder.decoder.parameters()
     ]
     assert any(moved) and alpha + beta > 0.0
+    assert all(map(torch.equal, before, trainer.reader.parameters()))
+
+
+def test_both_ways_are_held_equally_likely() -> None:
+    torch.manual_seed(0)
+    one = ANSWERERS["film"](WORDS, ANSWERS).eval()
+    images, owners = torch.rand(2, 3, 128, 128), torch.tensor([0, 1])
+    questions, swapped = torch.tensor([[1, 2], [1, 3]]), torch.tensor([[1, 3], [1, 2]])
+    both = BothWays(one, WORDS, (("dark", "bright"),))(images, questions, owners)
+    ways = one(images, questions, owners), one(images.flip(3), swapped, owners)
+    expected = (ways[0].softmax(1) + ways[1].softmax(1)) / 2.0
+    assert torch.allclose(both.exp(), expected, atol=1e-6)
+    alone = BothWays(one, WORDS, ())(images, questions, owners)
+    assert torch.allclose(alone.exp(), ways[0].softmax(1), atol=1e-6)
 
 
 def test_a_training_goes_on_from_its_checkpoint_as_if_it_had_not_stopped(tmp_path: Path) -> None:
     path = tmp_path / "checkpoint.pt"
-    whole = QaTrainer(asked(), config(epochs=2))
+    whole = trainer_of(epochs=2)
     assert whole.run(lambda *_: True)
-    first = QaTrainer(asked(), config(epochs=2))
+    first = trainer_of(epochs=2)
     assert not first.run(lambda step, _: step < 2, path)
-    second = QaTrainer(asked(), config(epochs=2))
+    second = trainer_of(epochs=2)
     second.resume(path)
     assert second.step == 2 and second.run(lambda *_: True)
-    for one, other in zip(whole.answerer.parameters(), second.answerer.parameters()):
+    for one, other in zip(whole.encoder.parameters(), second.encoder.parameters()):
         assert torch.equal(one, other)
     with pytest.raises(WeightsError, match="other hyper-parameters"):
-        QaTrainer(asked(), config(epochs=3)).resume(path)
+        trainer_of(epochs=3).resume(path)
+
+
+def test_an_answerer_goes_on_from_its_checkpoint_as_if_it_had_not_stopped(tmp_path: Path) -> None:
+    path = tmp_path / "checkpoint.pt"
+    whole = reader()
+    assert whole.run(lambda *_: True)
+    assert not reader().run(lambda step, _: step < 1, path)
+    second = reader()
+    second.resume(path)
+    assert second.step == 1 and second.run(lambda *_: True)
+    for one, other in zip(whole.answerer.parameters(), second.answerer.parameters()):
+        assert torch.equal(one, other)
+
+
+def test_images_are_asked_about_in_a_mirror_by_turns() -> None:
+    read = reader(mirrored=(("dark", "bright"),))
+    plain = reader()
+    for step in range(2):
+        _, images, questions, *_ = plain.batches.at(step)
+        _, shown, told, *_ = read.batches.at(step)
+        if step == 0:
+            assert torch.equal(shown, images) and torch.equal(told, questions)
+        else:
+            assert torch.equal(shown, images.flip(3))
+            swapped = torch.tensor([0, 1, 3, 2])[questions]
+            assert torch.equal(told, swapped)

@@ -6,13 +6,14 @@ Several questions about one image share what is seen of it; only what is asked i
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Final
 
 import torch
 from torch import Tensor, nn
 
-from .programs import ProgramNetwork, first_layers
+from .programs import ProgramNetwork
 
 #: Channels of what is seen and of the question, and edge of the map that is asked about.
 _SEEN: Final = 48
@@ -30,7 +31,12 @@ class _Sight(nn.Module):
     def __init__(self) -> None:
         super().__init__()
         self.layers = nn.Sequential(
-            *first_layers(_SEEN),
+            nn.Conv2d(3, 32, 5, stride=2, padding=2),
+            nn.BatchNorm2d(32),
+            nn.ReLU(),
+            nn.Conv2d(32, _SEEN, 3, stride=2, padding=1),
+            nn.BatchNorm2d(_SEEN),
+            nn.ReLU(),
             nn.Conv2d(_SEEN, _SEEN, 3, stride=2, padding=1),
             nn.BatchNorm2d(_SEEN),
             nn.ReLU(),
@@ -133,6 +139,47 @@ class FilmNetwork(Answerer):
             x = x + torch.relu((1.0 + scale[..., None, None]) * inner + shift[..., None, None])
         found: Tensor = self.end(torch.cat([x.amax((2, 3)), x.mean((2, 3))], dim=1))
         return found
+
+
+class BothWays(nn.Module):
+    """Reads an image as it is and in a mirror, and holds both answers equally likely.
+
+    Args:
+        answerer: the interface of :class:`Answerer`; it was trained on mirrored images, too.
+        words: of questions.
+        mirrored: those that change places in a mirror, by pairs; without any, nothing is mirrored.
+    """
+
+    in_mirror: Tensor
+
+    def __init__(
+        self, answerer: nn.Module, words: Sequence[str], mirrored: Sequence[tuple[str, str]]
+    ) -> None:
+        super().__init__()
+        self.answerer = answerer
+        self.ways = (False, True) if mirrored else (False,)
+        self.register_buffer("in_mirror", words_in_mirror(words, mirrored), persistent=False)
+
+    def forward(self, images: Tensor, questions: Tensor, owners: Tensor) -> Tensor:
+        """Log-probabilities of the answers, shape (m, |Y|); see :meth:`Answerer.forward`."""
+        read = [self.one_way(images, questions, owners, mirror) for mirror in self.ways]
+        return torch.logsumexp(torch.stack(read), 0) - math.log(len(read))
+
+    def one_way(self, images: Tensor, questions: Tensor, owners: Tensor, mirror: bool) -> Tensor:
+        """The same, read in one way only."""
+        if mirror:
+            images, questions = images.flip(3), self.in_mirror[questions]
+        return self.answerer(images, questions, owners).log_softmax(1)
+
+
+def words_in_mirror(words: Sequence[str], mirrored: Sequence[tuple[str, str]]) -> Tensor:
+    """The number of the word that each one becomes in a mirror."""
+    numbers = torch.arange(len(words))
+    for one, other in mirrored:
+        numbers[[words.index(one), words.index(other)]] = torch.tensor(
+            [words.index(other), words.index(one)]
+        )
+    return numbers
 
 
 #: By name; those of :data:`READ_PROGRAMS` are told questions as programs.

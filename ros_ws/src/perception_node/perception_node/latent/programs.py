@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Answers questions that are told as functional programs, by learnt concepts on places of an image.
+"""Answers questions that are told as functional programs, on what is seen of an image's places.
 
-What a place shows (whether a thing has its middle there, which attributes it has, what is beside
-what) is learnt from answers alone, through the program, every function of which can be
-differentiated. Neither things nor attributes are labelled.
+Every function of a program is one of probabilities that can be differentiated, so what is seen is
+learnt from answers alone. What is told of places is taken to be independent; numbers of things
+then have exactly the distribution of a sum of such events (Poisson binomial), and comparing two of
+them is exact, too.
 
 A program is a row of tokens in the order in which they are executed on a stack:
 
 ========================  =====================================================================
-``scene``                 pushes all places, each 1
+``scene``                 pushes all places, each as far as it shows a thing
 ``filter ATTRIBUTE WORD`` places times the probability of the word
 ``unique``                places become a distribution over things
 ``relate RELATION``       a distribution becomes the places that stand so to its thing
@@ -22,84 +23,21 @@ A program is a row of tokens in the order in which they are executed on a stack:
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Final
+from collections.abc import Sequence
+from typing import Final
 
 import torch
 from torch import Tensor, nn
 
-from .networks import half_precision
+from .sight import Seen, ThingSight
 
-#: Edge of the map of places, and channels of what is seen of each.
-_EDGE: Final = 32
-_SEEN: Final = 48
-#: Width of what relations are told by.
-_BESIDE: Final = 32
 _TINY: Final = 1e-6
+#: Share of every answer's probability that is spread over all: no answer is held impossible.
+_DOUBT: Final = 1e-4
 
-
-@dataclass(frozen=True)
-class Seen:
-    """What is seen of n images, once for all questions about them.
-
-    Attributes:
-        features: of each of p places, shape (n, p, c).
-        things: probability that a thing has its middle there, shape (n, p).
-        words: by attribute, probability of each of its k words, in alphabetical order, (n, p, k).
-        here: what tells relations to a place, shape (n, p, h).
-    """
-
-    features: Tensor
-    things: Tensor
-    words: Mapping[str, Tensor]
-    here: Tensor
-
-
-def first_layers(channels: int) -> nn.Sequential:
-    """Images (n, 3, s, s) -> (n, channels, s / 4, s / 4); what every answerer begins with."""
-    return nn.Sequential(
-        nn.Conv2d(3, 32, 5, stride=2, padding=2),
-        nn.BatchNorm2d(32),
-        nn.ReLU(),
-        nn.Conv2d(32, channels, 3, stride=2, padding=1),
-        nn.BatchNorm2d(channels),
-        nn.ReLU(),
-    )
-
-
-class PlaceSight(nn.Module):
-    """Images (n, 3, 128, 128) -> what is seen of 32 x 32 places, (n, 1024, 50).
-
-    The last two say where a place is. Layers look farther and farther around.
-    """
-
-    where: Tensor
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.start = first_layers(_SEEN)
-        self.around = nn.ModuleList(
-            nn.Sequential(
-                nn.Conv2d(_SEEN, _SEEN, 3, padding=reach, dilation=reach),
-                nn.BatchNorm2d(_SEEN),
-                nn.ReLU(),
-            )
-            for reach in (1, 2, 4)
-        )
-        line = torch.linspace(-1.0, 1.0, _EDGE)
-        where = torch.stack(torch.meshgrid(line, line, indexing="ij"))
-        self.register_buffer("where", where.flatten(1).T[None].contiguous())
-
-    def forward(self, images: Tensor) -> Tensor:
-        """See the class."""
-        with half_precision(self.training):
-            seen = self.start(images - 0.5)
-            for layer in self.around:
-                seen = seen + layer(seen)
-        places = seen.float().flatten(2).transpose(1, 2)
-        return torch.cat([places, self.where.expand(len(places), -1, -1)], dim=2)
+#: A function of a program, with what it is told where that changes what is executed.
+Step = tuple[str, ...]
+Skeleton = tuple[Step, ...]
 
 
 class ProgramNetwork(nn.Module):
@@ -114,124 +52,158 @@ class ProgramNetwork(nn.Module):
         super().__init__()
         self._tokens = [tuple(word.split()) for word in words]
         self._answers = {answer: number for number, answer in enumerate(answers)}
-        filters = [token[1:] for token in self._tokens if token[:1] == ("filter",)]
         self._values: dict[str, list[str]] = {}
-        for name, value in sorted(filters):
+        for name, value in sorted(t[1:] for t in self._tokens if t[:1] == ("filter",)):
             self._values.setdefault(name, []).append(value)
-        self._relations = sorted(token[1] for token in self._tokens if token[:1] == ("relate",))
-        width = _SEEN + 2
-        self.sight = PlaceSight()
-        self.thing = nn.Linear(width, 1)
-        nn.init.constant_(self.thing.bias, -5.0)
-        self.attributes = nn.ModuleDict(
-            {name: nn.Linear(width, len(values)) for name, values in self._values.items()}
-        )
-        self.here = nn.Linear(width, _BESIDE)
-        self.there = nn.Linear(width, max(1, len(self._relations)) * _BESIDE)
-        self.beside = nn.Parameter(0.2 * torch.randn(max(1, len(self._relations)), _BESIDE))
-        self.beside_bias = nn.Parameter(torch.zeros(max(1, len(self._relations))))
-        self.sharpness = nn.Parameter(torch.tensor(2.0))
+        self._relations = sorted(t[1] for t in self._tokens if t[:1] == ("relate",))
+        # A kind is a number whose digits are the words of each attribute, 0 for any.
+        self._strides, stride = {}, 1
+        for name, values in reversed(self._values.items()):
+            self._strides[name] = stride
+            stride *= 1 + len(values)
+        self.sight = ThingSight(self._values, len(self._relations))
 
     def forward(self, images: Tensor, questions: Tensor, owners: Tensor) -> Tensor:
-        """Logits of the answers, shape (m, |Y|); see :meth:`.answering.Answerer.forward`."""
-        return self.execute(self.look(images), questions, owners)
-
-    def look(self, images: Tensor) -> Seen:
-        """What is seen of images (n, 3, 128, 128)."""
-        features = self.sight(images)
-        return Seen(
-            features=features,
-            things=torch.sigmoid(self.thing(features)[..., 0]),
-            words={name: head(features).softmax(-1) for name, head in self.attributes.items()},
-            here=self.here(features),
-        )
+        """Log-probabilities of the answers (m, |Y|); see :meth:`.answering.Answerer.forward`."""
+        return self.execute(self.sight(images), questions, owners)
 
     def execute(self, scene: Seen, questions: Tensor, owners: Tensor) -> Tensor:
-        """Logits (m, |Y|) of programs (m, t) about images that were looked at."""
-        groups: dict[tuple[Any, ...], list[int]] = defaultdict(list)
-        rows = questions.tolist()
-        for number, row in enumerate(rows):
-            groups[self._skeleton(row)].append(number)
-        logits = scene.things.new_full((len(rows), len(self._answers)), -12.0)
+        """Log-probabilities (m, |Y|) of programs (m, t) about images that were looked at."""
+        groups: dict[Skeleton, tuple[list[int], list[list[int]]]] = {}
+        for number, row in enumerate(questions.tolist()):
+            skeleton, told = self._told(row)
+            members, all_told = groups.setdefault(skeleton, ([], []))
+            members.append(number)
+            all_told.append(told)
+        kinds = self._kinds(scene)
+        ends: dict[Step, list[tuple[list[int], list[Tensor]]]] = {}
+        for skeleton, (members, all_told) in groups.items():
+            told_to_each = torch.tensor(all_told, device=owners.device).unbind(1)
+            left = self._executed(scene, kinds, owners[members], skeleton[:-1], told_to_each)
+            ends.setdefault(skeleton[-1], []).append((members, left))
         order, found = [], []
-        for skeleton, members in groups.items():
-            tokens = [[self._tokens[word] for word in rows[number] if word] for number in members]
-            found.append(self._executed(scene, owners[members], skeleton, tokens, logits[members]))
+        for end, parts in ends.items():
+            members = [number for numbers, _ in parts for number in numbers]
+            left = [torch.cat(masks) for masks in zip(*(masks for _, masks in parts))]
+            found.append(self._ended(scene, owners[members], end, left))
             order += members
-        return torch.cat(found)[torch.tensor(order).argsort()]
+        shares = torch.cat(found)[torch.tensor(order).argsort()]
+        return (shares.clamp(0.0, 1.0) * (1.0 - _DOUBT) + _DOUBT / shares.shape[1]).log()
 
-    def _skeleton(self, row: Sequence[int]) -> tuple[Any, ...]:
-        """What programs that are executed together have in common: all but words and relations."""
-        return tuple(self._tokens[word][:2] if self._tokens[word][0] != "relate" else ("relate",)
-                     for word in row if word)  # fmt: skip
+    def _told(self, row: Sequence[int]) -> tuple[Skeleton, list[int]]:
+        """What programs that are executed together have in common, and what each step is told.
+
+        Filters in a row become one; what that is told is a number of :meth:`_kinds`.
+        """
+        skeleton: list[Step] = []
+        told: list[int] = []
+        for function, *rest in (self._tokens[word] for word in row if word):
+            if function == "filter":
+                kind = self._strides[rest[0]] * (1 + self._values[rest[0]].index(rest[1]))
+                if skeleton[-1] == ("filter",):
+                    told[-1] += kind
+                else:
+                    skeleton.append(("filter",))
+                    told.append(kind)
+            elif function == "relate":
+                skeleton.append((function,))
+                told.append(self._relations.index(rest[0]))
+            else:
+                skeleton.append((function, *rest))
+                told.append(0)
+        return tuple(skeleton), told
+
+    def _kinds(self, scene: Seen) -> Tensor:
+        """Probability of each place that all words of a kind fit, (n, k, kinds); 0 is no word."""
+        kinds = torch.ones_like(scene.things)[..., None]
+        for name in self._values:
+            any_word = torch.cat([torch.ones_like(kinds[..., :1]), scene.words[name]], -1)
+            kinds = (kinds[..., None] * any_word[..., None, :]).flatten(2)
+        return kinds
 
     def _executed(
-        self,
-        scene: Seen,
-        owners: Tensor,
-        skeleton: Sequence[tuple[str, ...]],
-        tokens: Sequence[Sequence[tuple[str, ...]]],
-        logits: Tensor,
-    ) -> Tensor:
-        """Answers (g, |Y|) of programs of one skeleton about images (g,)."""
+        self, scene: Seen, kinds: Tensor, owners: Tensor, skeleton: Skeleton, told: Sequence[Tensor]
+    ) -> list[Tensor]:
+        """The stack before the last step of programs of one skeleton about images (g,)."""
         things = scene.things[owners]
         stack: list[Tensor] = []
-        for place, (function, *rest) in enumerate(skeleton):
+        for (function, *_), words in zip(skeleton, told):
             if function == "scene":
-                stack.append(torch.ones_like(things))
+                stack.append(things)
             elif function == "filter":
-                values = self._values[rest[0]]
-                wanted = torch.tensor([values.index(row[place][2]) for row in tokens])
-                stack.append(stack.pop() * scene.words[rest[0]][owners, :, wanted])
+                stack.append(stack.pop() * kinds[owners, :, words])
             elif function == "unique":
-                weights = stack.pop() * things
-                stack.append(weights / (weights.sum(1, keepdim=True) + _TINY))
+                mask = stack.pop()
+                stack.append(mask / (mask.sum(1, keepdim=True) + _TINY))
             elif function == "relate":
-                kinds = torch.tensor([self._relations.index(row[place][1]) for row in tokens])
-                stack.append(self._beside(scene, owners, stack.pop(), kinds))
+                beside = scene.beside[owners, words]
+                stack.append(things * torch.einsum("gij,gj->gi", beside, stack.pop()))
             elif function in ("and", "or"):
+                # Either mask says of a place that it shows a thing, which is so once.
                 second, first = stack.pop(), stack.pop()
-                both = first * second
+                both = first * second / (things + _TINY)
                 stack.append(both if function == "and" else first + second - both)
-            elif function in ("count", "exist"):
-                stack.append((stack.pop() * things).sum(1))
-            elif function in ("query", "same"):
-                shares = scene.words[rest[0]][owners]
-                first = torch.einsum("gp,gpk->gk", stack.pop(), shares)
-                if function == "query":
-                    return self._words(logits, self._values[rest[0]], (first + _TINY).log())
-                second = torch.einsum("gp,gpk->gk", stack.pop(), shares)
-                return self._yes_no(logits, (first * second).sum(1).logit(1e-4))
-            else:
-                second, first = stack.pop(), stack.pop()
-                margin = {
-                    "more": first - second - 0.5,
-                    "fewer": second - first - 0.5,
-                    "equal": 0.5 - (first - second).abs(),
-                }[function]
-                return self._yes_no(logits, 2.0 * self.sharpness * margin)
-        number = stack.pop()
-        if skeleton[-1][0] == "exist":
-            return self._yes_no(logits, 2.0 * self.sharpness * (number - 0.5))
-        counts = [answer for answer in self._answers if answer.isdigit()]
-        told = number.new_tensor([float(answer) for answer in counts])
-        return self._words(logits, counts, -self.sharpness * (number[:, None] - told).square())
+            # Things are counted by the last step, which compares two counts or tells one.
+        return stack
 
-    def _beside(self, scene: Seen, owners: Tensor, anchor: Tensor, kinds: Tensor) -> Tensor:
-        """Probability (g, 1024) that what is at a place stands so to the thing at an anchor."""
-        shown = torch.einsum("gp,gpc->gc", anchor, scene.features[owners])
-        rows = torch.arange(len(kinds))
-        there = self.there(shown).unflatten(1, (-1, _BESIDE))[rows, kinds]
-        hidden = torch.tanh(scene.here[owners] + there[:, None])
-        score = torch.einsum("gph,gh->gp", hidden, self.beside[kinds])
-        return torch.sigmoid(4.0 * score + self.beside_bias[kinds][:, None])
+    def _ended(self, scene: Seen, owners: Tensor, end: Step, left: Sequence[Tensor]) -> Tensor:
+        """Probabilities (g, |Y|) of what the last step makes of what is left on the stack."""
+        function, *rest = end
+        if function in ("query", "same"):
+            shares = scene.words[rest[0]][owners]
+            words = [torch.einsum("gp,gpw->gw", thing, shares) for thing in left]
+            if function == "query":
+                return self._answer(self._values[rest[0]], words[0])
+            return self._yes((words[0] * words[1]).sum(1))
+        numbers = [how_many(mask) for mask in left]
+        if function == "exist":
+            return self._yes(1.0 - numbers[0][:, 0])
+        if function == "count":
+            told = [str(number) for number in range(numbers[0].shape[1])]
+            return self._answer(told, numbers[0])
+        both = numbers[0][:, :, None] * numbers[1][:, None]
+        if function == "equal":
+            return self._yes(both.diagonal(dim1=1, dim2=2).sum(1))
+        return self._yes((both.tril(-1) if function == "more" else both.triu(1)).sum((1, 2)))
 
-    def _words(self, logits: Tensor, words: Sequence[str], values: Tensor) -> Tensor:
-        columns = [self._answers[word] for word in words if word in self._answers]
+    def _answer(self, words: Sequence[str], shares: Tensor) -> Tensor:
+        """Probabilities of words (g, w) as those of answers; what is no answer is left out."""
         kept = [number for number, word in enumerate(words) if word in self._answers]
-        logits = logits.clone()
-        logits[:, columns] = values[:, kept]
-        return logits
+        columns = torch.tensor([self._answers[words[number]] for number in kept])
+        answers = shares.new_zeros(len(shares), len(self._answers))
+        return answers.index_copy(1, columns.to(shares.device), shares[:, kept])
 
-    def _yes_no(self, logits: Tensor, yes: Tensor) -> Tensor:
-        return self._words(logits, ["yes", "no"], torch.stack([0.5 * yes, -0.5 * yes], dim=1))
+    def _yes(self, shares: Tensor) -> Tensor:
+        return self._answer(["yes", "no"], torch.stack([shares, 1.0 - shares], dim=1))
+
+
+class SymbolicNetwork(nn.Module):
+    """Answers on the graph that a network holds most likely, as if it were certain.
+
+    Args:
+        network: reads the graph off images and executes programs on it.
+    """
+
+    def __init__(self, network: ProgramNetwork) -> None:
+        super().__init__()
+        self.network = network
+
+    def forward(self, images: Tensor, questions: Tensor, owners: Tensor) -> Tensor:
+        """See :meth:`ProgramNetwork.forward`."""
+        seen = self.network.sight(images)
+        graph = Seen(
+            things=seen.things.round(),
+            words={name: (s == s.amax(-1, keepdim=True)).float() for name, s in seen.words.items()},
+            beside=seen.beside.round(),
+        )
+        return self.network.execute(graph, questions, owners)
+
+
+def how_many(shares: Tensor) -> Tensor:
+    """The distribution of how many of k independent events happen: (g, k) -> (g, k + 1)."""
+    count = shares.shape[1]
+    numbers = nn.functional.pad(torch.ones_like(shares[:, :1]), (0, count))
+    for event in shares.unbind(1):
+        happens = nn.functional.pad(numbers[:, :-1], (1, 0))
+        numbers = torch.lerp(numbers, happens, event[:, None])
+    return numbers

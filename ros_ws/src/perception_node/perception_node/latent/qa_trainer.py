@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Trains state encoder and answerer together: eq. 4.2 in its three settings."""
+"""Trains an answerer, then state encoders by what it reads off the pictures their codes show.
+
+That is eq. 4.2 in its three settings. The answerer learns from the images first (the likelihood
+term) and is then the same for all settings.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -15,7 +19,7 @@ from torch.nn import functional
 
 from perception_node.training.run import Stateful, TrainingRun
 
-from .answering import ANSWERERS
+from .answering import ANSWERERS, BothWays, words_in_mirror
 from .networks import half_precision
 from .state_encoder import EncoderConfig, StateEncoder, values_of
 
@@ -45,14 +49,13 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class QaConfig:
-    """Hyper-parameters.
+class ReaderConfig:
+    """Hyper-parameters of the answerer's own training.
 
     Attributes:
-        encoder: what is trained.
-        setting: one of :data:`SETTINGS`.
         answerer: one of :data:`.answering.ANSWERERS`.
         words, answers: that there are; the first word stands for none.
+        mirrored: words that change places in a mirror; without any, no image is mirrored.
         epochs: passes over the images.
         batch: images in a batch, with all of their questions.
         learning_rate: peak of a one-cycle schedule.
@@ -60,45 +63,58 @@ class QaConfig:
         seed: of weights and batches.
     """
 
-    encoder: EncoderConfig = field(default_factory=lambda: EncoderConfig(channels=64))
-    setting: str = "both"
     answerer: str = "program"
     words: tuple[str, ...] = ("",)
     answers: tuple[str, ...] = ("yes", "no")
-    epochs: int = 30
+    mirrored: tuple[tuple[str, str], ...] = ()
+    epochs: int = 20
+    batch: int = 32
+    learning_rate: float = 3e-3
+    checkpoint_every: int = 100
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class QaConfig:
+    """Hyper-parameters of a state encoder's training by what an answerer reads off its pictures.
+
+    Attributes:
+        encoder: what is trained.
+        setting: one of :data:`SETTINGS`.
+        reader: how the answerer was trained.
+        epochs, batch, learning_rate, checkpoint_every, seed: as the reader's.
+    """
+
+    encoder: EncoderConfig = field(default_factory=lambda: EncoderConfig(channels=64))
+    setting: str = "both"
+    reader: ReaderConfig = field(default_factory=ReaderConfig)
+    epochs: int = 16
     batch: int = 16
     learning_rate: float = 1.5e-3
     checkpoint_every: int = 100
     seed: int = 0
 
 
-class QaTrainer(TrainingRun[dict[str, float]]):
-    """One run; each step tells the parts of its loss."""
+class ReaderTrainer(TrainingRun[dict[str, float]]):
+    """Trains an answerer on the images themselves: the likelihood term of eq. 4.2."""
 
-    def __init__(self, asked: Asked, config: QaConfig) -> None:
-        super().__init__(config, config.epochs * -(-len(asked.images) // config.batch))
-        self.asked = asked
-        self.alpha, self.beta = SETTINGS[config.setting]
+    def __init__(self, asked: Asked, config: ReaderConfig) -> None:
+        super().__init__(config, _steps(asked, config))
         torch.manual_seed(config.seed)
-        self.encoder = StateEncoder(config.encoder)
+        self.batches = _Batches(asked, config, config.words, config.mirrored)
         self.answerer = ANSWERERS[config.answerer](config.words, config.answers)
-        parameters = [*self.encoder.parameters(), *self.answerer.parameters()]
-        self.optimizer = torch.optim.AdamW(parameters, lr=config.learning_rate, weight_decay=1e-4)
-        self.schedule = torch.optim.lr_scheduler.OneCycleLR(
-            self.optimizer, config.learning_rate, total_steps=self.steps, pct_start=0.1
-        )
-        self._bounds = np.searchsorted(asked.owners, np.arange(len(asked.images) + 1))
+        self.reader = BothWays(self.answerer, config.words, config.mirrored)
+        self.optimizer, self.schedule = _optimizer(self.answerer, config, self.steps)
 
     @property
-    def networks(self) -> tuple[nn.Module, nn.Module]:
+    def networks(self) -> tuple[nn.Module]:
         """See :class:`TrainingRun`."""
-        return (self.encoder, self.answerer)
+        return (self.answerer,)
 
     @property
     def parts(self) -> Mapping[str, Stateful]:
         """See :class:`TrainingRun`."""
         return {
-            "encoder": self.encoder,
             "answerer": self.answerer,
             "optimizer": self.optimizer,
             "schedule": self.schedule,
@@ -111,52 +127,173 @@ class QaTrainer(TrainingRun[dict[str, float]]):
 
     def advance(self) -> dict[str, float]:
         """See :class:`TrainingRun`."""
-        images, questions, owners, answers = self._batch()
+        _, images, questions, owners, answers = self.batches.at(self.step)
+        loss = functional.cross_entropy(self.answerer(images, questions, owners), answers)
+        _descend(loss, self.answerer, self.optimizer, self.schedule)
+        return {"likelihood": float(loss.detach())}
+
+
+class QaTrainer(TrainingRun[dict[str, float]]):
+    """Trains a state encoder by eq. 4.2; each step tells the parts of its loss.
+
+    Args:
+        asked: what is shown and asked.
+        config: the hyper-parameters.
+        reader: a trained one; it stays as it is, so that all settings are read by the same.
+        start: a trained encoder of the same kind to go on from; without one, from nothing.
+    """
+
+    def __init__(
+        self,
+        asked: Asked,
+        config: QaConfig,
+        reader: BothWays,
+        start: StateEncoder | None = None,
+    ) -> None:
+        super().__init__(config, _steps(asked, config))
+        self.alpha, self.beta = SETTINGS[config.setting]
+        torch.manual_seed(config.seed)
+        self.batches = _Batches(asked, config, config.reader.words)
+        self.encoder = StateEncoder(config.encoder)
+        if start is not None:
+            self.encoder.load_state_dict(start.state_dict())
+        self.reader = reader.eval().requires_grad_(False)
+        self.optimizer, self.schedule = _optimizer(self.encoder, config, self.steps)
+        self._of_images: Tensor | None = None
+
+    @property
+    def networks(self) -> tuple[nn.Module]:
+        """See :class:`TrainingRun`."""
+        return (self.encoder,)
+
+    @property
+    def parts(self) -> Mapping[str, Stateful]:
+        """See :class:`TrainingRun`."""
+        return {
+            "encoder": self.encoder,
+            "optimizer": self.optimizer,
+            "schedule": self.schedule,
+        }
+
+    @property
+    def generator(self) -> torch.Generator:
+        """PyTorch's own; batches come from seed and epoch."""
+        return torch.default_generator
+
+    def advance(self) -> dict[str, float]:
+        """See :class:`TrainingRun`."""
+        index, images, questions, owners, answers = self.batches.at(self.step)
         with half_precision():
             features = self.encoder.encoder(images)
         quantised, _, own = self.encoder.quantiser(features.float())
         with half_precision():
             shown = self.encoder.decoder(quantised)
         shown = shown.float()
-        of_image = self.answerer(images, questions, owners)
-        likelihood = functional.cross_entropy(of_image, answers)
         error = (shown - images).square().mean()
-        loss = self.alpha * error + own + likelihood
-        divergence = error.new_zeros(())
+        loss = self.alpha * error + own
+        told = {"error": float(error.detach())}
         if self.beta:
-            of_shown = self.answerer(shown, questions, owners)
+            # The likelihood of the answers is asked of what the code shows.
+            of_image = self._read()[index]
+            way = self.reader.ways[self.step % len(self.reader.ways)]
+            of_shown = self.reader.one_way(shown, questions, owners, way)
+            likelihood = functional.nll_loss(of_shown, answers)
             divergence = functional.kl_div(
-                functional.log_softmax(of_shown, 1),
-                functional.log_softmax(of_image.detach(), 1),
-                reduction="batchmean",
-                log_target=True,
+                of_shown, of_image, reduction="batchmean", log_target=True
             )
-            # The likelihood of the answers is asked of what the code shows, too.
-            loss = loss + self.beta * (divergence + functional.cross_entropy(of_shown, answers))
-        self.optimizer.zero_grad(set_to_none=True)
-        loss.backward()
-        for network in (self.encoder, self.answerer):
-            torch.nn.utils.clip_grad_norm_(network.parameters(), 2.0)
-        self.optimizer.step()
-        self.schedule.step()
-        return {
-            "error": float(error.detach()),
-            "likelihood": float(likelihood.detach()),
-            "divergence": float(divergence.detach()),
-        }
+            loss = loss + self.beta * (divergence + likelihood)
+            told |= {
+                "likelihood": float(likelihood.detach()),
+                "divergence": float(divergence.detach()),
+            }
+        _descend(loss, self.encoder, self.optimizer, self.schedule)
+        return told
 
-    def _batch(self) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-        """Every image once an epoch, in an order that the seed and the epoch give."""
-        size, count = self.config.batch, len(self.asked.images)
-        epoch, place = divmod(self.step, -(-count // size))
-        order = np.random.default_rng([self.config.seed, epoch]).permutation(count)
-        picked = order[place * size : (place + 1) * size]
+    @torch.no_grad()
+    def _read(self) -> Tensor:
+        """Log-probabilities (m, |Y|) of answers to all questions, read off the images; kept."""
+        if self._of_images is None:
+            read = [
+                self.reader(values_of(images), questions, owners)
+                for images, questions, owners in self.batches.all()
+            ]
+            self._of_images = torch.cat(read)
+        return self._of_images
+
+
+class _Batches:
+    """Every image once an epoch, with all of its questions, in an order by seed and epoch.
+
+    Args:
+        asked: all of them.
+        config: with ``batch`` and ``seed``.
+        words: of questions.
+        mirrored: see :class:`ReaderConfig`; every second batch is mirrored, an image by turns.
+    """
+
+    def __init__(
+        self,
+        asked: Asked,
+        config: ReaderConfig | QaConfig,
+        words: Sequence[str],
+        mirrored: Sequence[tuple[str, str]] = (),
+    ) -> None:
+        self.asked, self.size, self.seed = asked, config.batch, config.seed
+        self._bounds = np.searchsorted(asked.owners, np.arange(len(asked.images) + 1))
+        self._in_mirror = words_in_mirror(words, mirrored).numpy()
+        self._turns = 2 if mirrored else 1
+
+    def at(self, step: int) -> tuple[Tensor, Tensor, Tensor, Tensor, Tensor]:
+        """Which questions are asked in a step, of what images, how, about which, and answers."""
+        count = len(self.asked.images)
+        epoch, place = divmod(step, -(-count // self.size))
+        order = np.random.default_rng([self.seed, epoch]).permutation(count)
+        picked = order[place * self.size : (place + 1) * self.size]
         rows = [np.arange(self._bounds[i], self._bounds[i + 1]) for i in picked]
         owners = np.repeat(np.arange(len(picked)), [len(row) for row in rows])
         index = np.concatenate(rows)
+        images, questions = self.asked.images[picked], self.asked.questions[index]
+        if (epoch + place) % self._turns:
+            images, questions = images[:, :, ::-1].copy(), self._in_mirror[questions]
         return (
-            values_of(self.asked.images[picked]),
-            torch.from_numpy(self.asked.questions[index]),
+            torch.from_numpy(index),
+            values_of(images),
+            torch.from_numpy(questions),
             torch.from_numpy(owners),
             torch.from_numpy(self.asked.answers[index]),
         )
+
+    def all(self) -> Iterator[tuple[NDArray[np.uint8], Tensor, Tensor]]:
+        """All images in turn with their questions and which of them each is about."""
+        for start in range(0, len(self.asked.images), self.size):
+            images = self.asked.images[start : start + self.size]
+            rows = slice(self._bounds[start], self._bounds[start + len(images)])
+            owners = torch.from_numpy(self.asked.owners[rows] - start)
+            yield images, torch.from_numpy(self.asked.questions[rows]), owners
+
+
+def _steps(asked: Asked, config: ReaderConfig | QaConfig) -> int:
+    return config.epochs * -(-len(asked.images) // config.batch)
+
+
+def _optimizer(
+    network: nn.Module, config: ReaderConfig | QaConfig, steps: int
+) -> tuple[torch.optim.Optimizer, torch.optim.lr_scheduler.LRScheduler]:
+    optimizer = torch.optim.AdamW(network.parameters(), lr=config.learning_rate, weight_decay=1e-4)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(
+        optimizer, config.learning_rate, total_steps=steps, pct_start=0.1
+    )
+    return optimizer, schedule
+
+
+def _descend(
+    loss: Tensor,
+    network: nn.Module,
+    optimizer: torch.optim.Optimizer,
+    schedule: torch.optim.lr_scheduler.LRScheduler,
+) -> None:
+    optimizer.zero_grad(set_to_none=True)
+    loss.backward()
+    torch.nn.utils.clip_grad_norm_(network.parameters(), 2.0)
+    optimizer.step()
+    schedule.step()
