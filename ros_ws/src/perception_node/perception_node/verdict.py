@@ -78,6 +78,13 @@ def judge(
     if graph.confidence < config.min_confidence:
         seen = [item for item in graph.objects if not is_hidden(item.name)]
         worst = min(seen, key=lambda item: item.confidence)
+        spots = zip(standing.places, standing.stacks)
+        if beside := [names.names[item] for place, stack in spots if place.aside for item in stack]:
+            return Verdict(
+                GraphStatus.OCCLUDED,
+                f"{worst.name} is not seen well enough where {' and '.join(beside)} stands beside "
+                "the places; put it on one, or take it away",
+            )
         return Verdict(
             GraphStatus.LOW_CONFIDENCE,
             f"the visual module reproduces {worst.name} with a confidence of only "
