@@ -26,7 +26,7 @@ from perception_node.latent.qa_trainer import SETTINGS, QaConfig, QaTrainer, Rea
 from perception_node.latent.state_encoder import CHANNELS, EncoderConfig
 
 #: Passes over the images of each setting's training.
-EPOCHS: Final = {"reconstruction": 16, "both": 1, "kl": 1}
+EPOCHS: Final = {"reconstruction": 16, "both": 3, "kl": 3}
 #: Peak of the learning rate of a training that goes on from another one.
 FURTHER_RATE: Final = 3e-4
 

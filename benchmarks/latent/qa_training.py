@@ -65,7 +65,7 @@ def train_qa(
     Args:
         folder: where it is kept.
         config: all but the answerer's.
-        reader: the trained answerer, which all settings share.
+        reader: the trained answerer; all settings begin with it.
         start: whose encoder it goes on from.
 
     Raises:
@@ -122,7 +122,7 @@ def qa_rows(trainer: QaTrainer, test: ClevrSet) -> list[Row]:
         row = replace(row, required=bound, thesis=accuracy)
     told = f"{config.epochs} epochs, {np.round(trainer.seconds)} s of training"
     if config.setting != "reconstruction":
-        told += ", going on from reconstruction"
+        told += ", encoder and answerer going on from reconstruction and from images"
     return [
         row,
         Row(label, "reconstruction error", found, "", len(test.images),

@@ -82,7 +82,16 @@ def test_each_setting_trains_what_it_names(setting: str) -> None:
         p.grad is not None and bool(p.grad.any()) for p in trainer.encoder.decoder.parameters()
     ]
     assert any(moved) and alpha + beta > 0.0
-    assert all(map(torch.equal, before, trainer.reader.parameters()))
+    same = list(map(torch.equal, before, trainer.reader.parameters()))
+    assert all(same) if beta == 0.0 else not all(same)
+
+
+def test_a_setting_leaves_the_reader_of_the_others_as_it_is() -> None:
+    read = reader()
+    before = {name: item.clone() for name, item in read.reader.state_dict().items()}
+    config = QaConfig(SMALL, "both", reader=read.config, batch=2, epochs=1)
+    assert QaTrainer(read.batches.asked, config, read.reader).run(lambda *_: True)
+    assert all(torch.equal(before[name], item) for name, item in read.reader.state_dict().items())
 
 
 def test_both_ways_are_held_equally_likely() -> None:
@@ -109,6 +118,8 @@ def test_a_training_goes_on_from_its_checkpoint_as_if_it_had_not_stopped(tmp_pat
     assert second.step == 2 and second.run(lambda *_: True)
     for one, other in zip(whole.encoder.parameters(), second.encoder.parameters()):
         assert torch.equal(one, other)
+    for one, other in zip(whole.reader.parameters(), second.reader.parameters()):
+        assert torch.equal(one, other)
     with pytest.raises(WeightsError, match="other hyper-parameters"):
         trainer_of(epochs=3).resume(path)
 
@@ -129,8 +140,8 @@ def test_images_are_asked_about_in_a_mirror_by_turns() -> None:
     read = reader(mirrored=(("dark", "bright"),))
     plain = reader()
     for step in range(2):
-        _, images, questions, *_ = plain.batches.at(step)
-        _, shown, told, *_ = read.batches.at(step)
+        images, questions, *_ = plain.batches.at(step)
+        shown, told, *_ = read.batches.at(step)
         if step == 0:
             assert torch.equal(shown, images) and torch.equal(told, questions)
         else:

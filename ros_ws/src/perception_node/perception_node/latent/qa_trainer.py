@@ -2,12 +2,14 @@
 """Trains an answerer, then state encoders by what it reads off the pictures their codes show.
 
 That is eq. 4.2 in its three settings. The answerer learns from the images first (the likelihood
-term) and is then the same for all settings.
+term). Where answers are asked of what codes show, it goes on learning from that, too: from the
+images and what their codes show alike.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -127,7 +129,7 @@ class ReaderTrainer(TrainingRun[dict[str, float]]):
 
     def advance(self) -> dict[str, float]:
         """See :class:`TrainingRun`."""
-        _, images, questions, owners, answers = self.batches.at(self.step)
+        images, questions, owners, answers = self.batches.at(self.step)
         loss = functional.cross_entropy(self.answerer(images, questions, owners), answers)
         _descend(loss, self.answerer, self.optimizer, self.schedule)
         return {"likelihood": float(loss.detach())}
@@ -139,7 +141,8 @@ class QaTrainer(TrainingRun[dict[str, float]]):
     Args:
         asked: what is shown and asked.
         config: the hyper-parameters.
-        reader: a trained one; it stays as it is, so that all settings are read by the same.
+        reader: a trained one. Of reconstruction only it is asked as it is; a setting with the
+            divergence trains one of its own on from there.
         start: a trained encoder of the same kind to go on from; without one, from nothing.
     """
 
@@ -153,27 +156,29 @@ class QaTrainer(TrainingRun[dict[str, float]]):
         super().__init__(config, _steps(asked, config))
         self.alpha, self.beta = SETTINGS[config.setting]
         torch.manual_seed(config.seed)
-        self.batches = _Batches(asked, config, config.reader.words)
+        mirrored = config.reader.mirrored if self.beta else ()
+        self.batches = _Batches(asked, config, config.reader.words, mirrored)
         self.encoder = StateEncoder(config.encoder)
         if start is not None:
             self.encoder.load_state_dict(start.state_dict())
-        self.reader = reader.eval().requires_grad_(False)
-        self.optimizer, self.schedule = _optimizer(self.encoder, config, self.steps)
-        self._of_images: Tensor | None = None
+        self.reader = deepcopy(reader).requires_grad_(True) if self.beta else reader
+        self._trained = nn.ModuleList(self.networks)
+        self.optimizer, self.schedule = _optimizer(self._trained, config, self.steps)
 
     @property
-    def networks(self) -> tuple[nn.Module]:
+    def networks(self) -> tuple[nn.Module, ...]:
         """See :class:`TrainingRun`."""
-        return (self.encoder,)
+        return (self.encoder, self.reader) if self.beta else (self.encoder,)
 
     @property
     def parts(self) -> Mapping[str, Stateful]:
         """See :class:`TrainingRun`."""
-        return {
+        parts: dict[str, Stateful] = {
             "encoder": self.encoder,
             "optimizer": self.optimizer,
             "schedule": self.schedule,
         }
+        return parts | {"reader": self.reader} if self.beta else parts
 
     @property
     def generator(self) -> torch.Generator:
@@ -182,7 +187,7 @@ class QaTrainer(TrainingRun[dict[str, float]]):
 
     def advance(self) -> dict[str, float]:
         """See :class:`TrainingRun`."""
-        index, images, questions, owners, answers = self.batches.at(self.step)
+        images, questions, owners, answers = self.batches.at(self.step)
         with half_precision():
             features = self.encoder.encoder(images)
         quantised, _, own = self.encoder.quantiser(features.float())
@@ -193,32 +198,24 @@ class QaTrainer(TrainingRun[dict[str, float]]):
         loss = self.alpha * error + own
         told = {"error": float(error.detach())}
         if self.beta:
-            # The likelihood of the answers is asked of what the code shows.
-            of_image = self._read()[index]
-            way = self.reader.ways[self.step % len(self.reader.ways)]
-            of_shown = self.reader.one_way(shown, questions, owners, way)
+            # One pass, so that what is normalised by batches is so alike for both.
+            pictures = torch.cat([images, shown])
+            both = torch.cat([owners, owners + len(images)])
+            read = self.reader.one_way(pictures, questions.repeat(2, 1), both, mirror=False)
+            of_images, of_shown = read.chunk(2)
             likelihood = functional.nll_loss(of_shown, answers)
+            from_images = functional.nll_loss(of_images, answers)
             divergence = functional.kl_div(
-                of_shown, of_image, reduction="batchmean", log_target=True
+                of_shown, of_images.detach(), reduction="batchmean", log_target=True
             )
-            loss = loss + self.beta * (divergence + likelihood)
+            loss = loss + self.beta * (divergence + likelihood + from_images)
             told |= {
                 "likelihood": float(likelihood.detach()),
+                "from images": float(from_images.detach()),
                 "divergence": float(divergence.detach()),
             }
-        _descend(loss, self.encoder, self.optimizer, self.schedule)
+        _descend(loss, self._trained, self.optimizer, self.schedule)
         return told
-
-    @torch.no_grad()
-    def _read(self) -> Tensor:
-        """Log-probabilities (m, |Y|) of answers to all questions, read off the images; kept."""
-        if self._of_images is None:
-            read = [
-                self.reader(values_of(images), questions, owners)
-                for images, questions, owners in self.batches.all()
-            ]
-            self._of_images = torch.cat(read)
-        return self._of_images
 
 
 class _Batches:
@@ -243,8 +240,8 @@ class _Batches:
         self._in_mirror = words_in_mirror(words, mirrored).numpy()
         self._turns = 2 if mirrored else 1
 
-    def at(self, step: int) -> tuple[Tensor, Tensor, Tensor, Tensor, Tensor]:
-        """Which questions are asked in a step, of what images, how, about which, and answers."""
+    def at(self, step: int) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+        """Images of a step, what is asked, about which of them, and the answers."""
         count = len(self.asked.images)
         epoch, place = divmod(step, -(-count // self.size))
         order = np.random.default_rng([self.seed, epoch]).permutation(count)
@@ -256,20 +253,11 @@ class _Batches:
         if (epoch + place) % self._turns:
             images, questions = images[:, :, ::-1].copy(), self._in_mirror[questions]
         return (
-            torch.from_numpy(index),
             values_of(images),
             torch.from_numpy(questions),
             torch.from_numpy(owners),
             torch.from_numpy(self.asked.answers[index]),
         )
-
-    def all(self) -> Iterator[tuple[NDArray[np.uint8], Tensor, Tensor]]:
-        """All images in turn with their questions and which of them each is about."""
-        for start in range(0, len(self.asked.images), self.size):
-            images = self.asked.images[start : start + self.size]
-            rows = slice(self._bounds[start], self._bounds[start + len(images)])
-            owners = torch.from_numpy(self.asked.owners[rows] - start)
-            yield images, torch.from_numpy(self.asked.questions[rows]), owners
 
 
 def _steps(asked: Asked, config: ReaderConfig | QaConfig) -> int:
