@@ -97,7 +97,7 @@ def test_a_block_that_is_not_where_it_was_or_is_to_be_is_taken_from_where_it_is(
         assert result.status == AchieveGoal.Result.SUCCESS, result.message
         told = "; ".join([result.message.split("]: ")[-1], *result.causes])
         # On a machine so slow that it is seen only when the hand is there it is planned anew.
-        assert "cyan_box was" in told, told
+        assert "cyan_box was" in told or result.replans, told
 
         # Another one stands beside the last place.
         add = Disturb.Request(kind=Disturb.Request.ADD, blocks=["green_box"])
