@@ -1,19 +1,77 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the commands that train have in common: the bar, Ctrl-C, and how weights came about."""
+"""What the commands that train have in common: options, the bar, Ctrl-C, how weights came about."""
 
 from __future__ import annotations
 
+import argparse
+import shutil
 import signal
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import date
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import torch
 from tqdm import tqdm
 
 from .run import TrainingRun
+
+CHECKPOINT: Final = "checkpoint.pt"
+
+
+def parse_options(
+    arguments: Sequence[str] | None,
+    name: str,
+    description: str,
+    folders: tuple[str, str],
+    settings: Mapping[str, Any],
+    choices: Mapping[str, Sequence[str]] | None = None,
+) -> argparse.Namespace:
+    """The options of a command: its folders, and a flag for every setting.
+
+    Args:
+        name: of the command.
+        folders: of the data, and of the run.
+        settings: names and defaults.
+        choices: of the settings that have some.
+    """
+    parser = argparse.ArgumentParser(
+        prog=name,
+        description=description,
+        formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+    )
+    data, run = map(Path, folders)
+    parser.add_argument("--data", type=Path, default=data, help="folder of shards")
+    parser.add_argument("--run", type=Path, default=run, help="folder to write")
+    parser.add_argument("--threads", type=int, default=2, help="processor threads")
+    parser.add_argument(
+        "--install", action="store_true", help="make the result the package's default weights"
+    )
+    for setting, default in settings.items():
+        flag = f"--{setting.replace('_', '-')}"
+        if isinstance(default, bool):
+            action = argparse.BooleanOptionalAction
+            parser.add_argument(flag, action=action, default=default, help=setting)
+        else:
+            some = (choices or {}).get(setting)
+            parser.add_argument(
+                flag, type=type(default), default=default, choices=some, help=setting
+            )
+    return parser.parse_args(arguments)
+
+
+def go_on(trainer: TrainingRun[float], checkpoint: Path) -> None:
+    """Takes up what was trained before, if anything was."""
+    if checkpoint.exists():
+        trainer.resume(checkpoint)
+        print(f"going on from step {trainer.step} of {trainer.steps} ({checkpoint})")
+
+
+def install(weights: Path, default: Path) -> None:
+    """Makes weights the package's own."""
+    shutil.copyfile(weights, default)
+    print(f"installed as the package's default: {default}")
 
 
 def train_to_the_end(trainer: TrainingRun[float], checkpoint: Path) -> bool:

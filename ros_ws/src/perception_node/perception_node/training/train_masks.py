@@ -7,11 +7,9 @@ On the views of ``make data-masks``. Ctrl-C saves and stops; the same command go
 from __future__ import annotations
 
 import argparse
-import shutil
 import sys
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any
 
 import torch
 from tqdm import tqdm
@@ -19,11 +17,17 @@ from tqdm import tqdm
 from perception_node.errors import PerceptionError
 from perception_node.segment.mask_network import DEFAULT_WEIGHTS, save_weights
 
-from .command import how_trained, train_to_the_end
+from .command import (
+    CHECKPOINT,
+    go_on,
+    how_trained,
+    install,
+    parse_options,
+    train_to_the_end,
+)
 from .mask_trainer import MaskTrainer, MaskTraining
 from .mask_views import read_views, shard_paths
 
-CHECKPOINT = "checkpoint.pt"
 WEIGHTS = "mask_network.safetensors"
 
 
@@ -48,8 +52,7 @@ def main(arguments: list[str] | None = None) -> int:
         return 130
     print(f"{path} written after {trainer.seconds:.0f} s of training")
     if options.install:
-        shutil.copyfile(path, DEFAULT_WEIGHTS)
-        print(f"installed as the package's default: {DEFAULT_WEIGHTS}")
+        install(path, DEFAULT_WEIGHTS)
     return 0
 
 
@@ -60,33 +63,14 @@ def _trainer(options: argparse.Namespace, checkpoint: Path) -> MaskTrainer:
     with tqdm(total=len(shard_paths(options.data)), desc="reading", unit="shard") as progress:
         views = read_views(options.data, on_shard=progress.update)
     trainer = MaskTrainer(views, config)
-    if checkpoint.exists():
-        trainer.resume(checkpoint)
-        print(f"going on from step {trainer.step} of {config.steps} ({checkpoint})")
+    go_on(trainer, checkpoint)
     return trainer
 
 
 def _parse(arguments: list[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="train_masks",
-        description=__doc__,
-        formatter_class=argparse.ArgumentDefaultsHelpFormatter,
-    )
-    parser.add_argument("--data", type=Path, default=Path("data/masks"), help="folder of shards")
-    parser.add_argument("--run", type=Path, default=Path("runs/masks"), help="folder to write")
-    parser.add_argument("--threads", type=int, default=2, help="processor threads")
-    parser.add_argument(
-        "--install", action="store_true", help="make the result the package's default weights"
-    )
-    for field in fields(MaskTraining):
-        flag = f"--{field.name.replace('_', '-')}"
-        kind: Any = type(field.default)
-        if kind is bool:
-            action = argparse.BooleanOptionalAction
-            parser.add_argument(flag, action=action, default=field.default, help=field.name)
-        else:
-            parser.add_argument(flag, type=kind, default=field.default, help=field.name)
-    return parser.parse_args(arguments)
+    settings = {field.name: field.default for field in fields(MaskTraining)}
+    folders = ("data/masks", "runs/masks")
+    return parse_options(arguments, "train_masks", __doc__ or "", folders, settings)
 
 
 if __name__ == "__main__":

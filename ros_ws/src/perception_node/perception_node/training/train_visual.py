@@ -8,11 +8,9 @@ same command goes on from there.
 from __future__ import annotations
 
 import argparse
-import shutil
 import sys
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any
 
 import torch
 from tqdm import tqdm
@@ -21,11 +19,17 @@ from perception_node.errors import PerceptionError
 from perception_node.visual_module.coordinate_regressor import BACKBONES
 from perception_node.visual_module.weights import DEFAULT_WEIGHTS, save_weights
 
-from .command import how_trained, train_to_the_end
+from .command import (
+    CHECKPOINT,
+    go_on,
+    how_trained,
+    install,
+    parse_options,
+    train_to_the_end,
+)
 from .dataset import read_crops, shard_paths
 from .trainer import Trainer, TrainingConfig, bfloat16_helps
 
-CHECKPOINT = "checkpoint.pt"
 WEIGHTS = "visual_module.safetensors"
 
 
@@ -49,8 +53,7 @@ def main(arguments: list[str] | None = None) -> int:
     save_weights(trainer.module, path, how_trained(command, asdict(trainer.config), trainer))
     print(f"{path} written after {trainer.seconds:.0f} s of training")
     if options.install:
-        shutil.copyfile(path, DEFAULT_WEIGHTS)
-        print(f"installed as the package's default: {DEFAULT_WEIGHTS}")
+        install(path, DEFAULT_WEIGHTS)
     else:
         print(
             f"use it with: ros2 run perception_node perception_node --ros-args -p weights:={path}"
@@ -65,36 +68,17 @@ def _trainer(options: argparse.Namespace, checkpoint: Path) -> Trainer:
     with tqdm(total=len(shard_paths(options.data)), desc="reading", unit="shard") as progress:
         crops = read_crops(options.data, on_shard=progress.update)
     trainer = Trainer(crops, config)
-    if checkpoint.exists():
-        trainer.resume(checkpoint)
-        print(f"going on from step {trainer.step} of {config.steps} ({checkpoint})")
+    go_on(trainer, checkpoint)
     return trainer
 
 
 def _parse(arguments: list[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="train_visual",
-        description=__doc__,
-        formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+    settings = {field.name: field.default for field in fields(TrainingConfig)}
+    settings["bfloat16"] = bfloat16_helps()
+    return parse_options(
+        *(arguments, "train_visual", __doc__ or "", ("data/states_5", "runs/visual")),
+        *(settings, {"backbone": BACKBONES}),
     )
-    parser.add_argument("--data", type=Path, default=Path("data/states_5"), help="folder of shards")
-    parser.add_argument("--run", type=Path, default=Path("runs/visual"), help="folder to write")
-    parser.add_argument("--threads", type=int, default=2, help="processor threads")
-    parser.add_argument(
-        "--install", action="store_true", help="make the result the package's default weights"
-    )
-    for field in fields(TrainingConfig):
-        flag = f"--{field.name.replace('_', '-')}"
-        default: Any = bfloat16_helps() if field.name == "bfloat16" else field.default
-        if isinstance(default, bool):
-            action = argparse.BooleanOptionalAction
-            parser.add_argument(flag, action=action, default=default, help=field.name)
-        else:
-            choices = BACKBONES if field.name == "backbone" else None
-            parser.add_argument(
-                flag, type=type(default), default=default, choices=choices, help=field.name
-            )
-    return parser.parse_args(arguments)
 
 
 if __name__ == "__main__":
