@@ -27,6 +27,7 @@ from tqdm import tqdm
 
 from motion_node.correcting import corrected
 from motion_node.errors import InfeasibleError
+from motion_node.nlp.compiled import finish
 from motion_node.phases import PICK
 from motion_node.planner import Motion, MotionPlanner
 from motion_node.timing.limits import JointLimits
@@ -254,6 +255,8 @@ def prepared_planner(lengths: Sequence[int]) -> MotionPlanner:
     planner = MotionPlanner(urdf.read_text())
     for moves in lengths:
         planner.prepare(len(BASES), moves)
+    finish()
+    for moves in lengths:
         solve(planner, random_problem(moves, 0))
     return planner
 

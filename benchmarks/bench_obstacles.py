@@ -23,6 +23,7 @@ from obstacle_scenes import WIDE, Backtracked, pen, plan_geometrically, wall
 from results_file import Row, print_rows, quick, wilson_interval, write_result
 from tqdm import tqdm
 
+from motion_node.nlp.compiled import finish
 from motion_node.obstacles import Obstacle
 from motion_node.planner import MotionPlanner
 from planner_node.goals import parse_goal, resolve_goal
@@ -197,6 +198,7 @@ def main() -> None:
     planner = MotionPlanner(urdf.read_text(), obstacles=[nowhere] * MOST)
     for moves in range(1, 5):
         planner.prepare(3, moves)
+    finish()
     plan_geometrically(planner, scene((1, 1, 0), places=WIDE), "red on green")
     found = [one(planner, seed) for seed in tqdm(range(FIRST_SEED, FIRST_SEED + count))]
     results = [item for item in found if item is not None]

@@ -27,6 +27,7 @@ from motion_node.blocks import read_scene
 from motion_node.certificate import Suggestions
 from motion_node.dense_check import check
 from motion_node.errors import InfeasibleError
+from motion_node.nlp.compiled import finish
 from motion_node.obstacles import Obstacle
 from motion_node.planner import MotionPlanner
 
@@ -71,6 +72,7 @@ class Bench:
         self._among = MotionPlanner(urdf, obstacles=[nowhere] * MOST)
         for planner in (self._plain, self._among):
             planner.prepare(3, 1)
+        finish()
 
     def one(self, seed: int) -> Result:
         """The table of a seed."""

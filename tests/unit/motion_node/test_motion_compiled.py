@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compiled functions give what interpreted ones give; where nothing compiles, nothing changes."""
 
+import contextlib
+import os
+import select
+import subprocess
+import sys
 from pathlib import Path
 
 import casadi as ca
@@ -8,7 +13,15 @@ import numpy as np
 import pytest
 
 from motion_node.nlp import compiled as module
-from motion_node.nlp.compiled import loaded, machine_code, opened, written
+from motion_node.nlp.compiled import (
+    MachineCode,
+    compilations,
+    finish,
+    loaded,
+    machine_code,
+    opened,
+    written,
+)
 
 
 def some_function(factor: float = 2.0) -> ca.Function:
@@ -81,3 +94,48 @@ def test_what_is_no_c_has_no_library(tmp_path: Path) -> None:
     assert written(wrong) is None
     assert opened(None) is None
     assert opened(wrong) is None
+
+
+@pytest.mark.usefixtures("cache")
+def test_machine_code_comes_in_the_background(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(MachineCode, "compile_later", lambda self: compilations().put(self))
+    coming = [MachineCode(some_function(factor)) for factor in (2.0, 3.0)]
+    finish()
+    assert all(one.ready.is_set() for one in coming)
+    for one, factor in zip(coming, (2.0, 3.0)):
+        function = some_function(factor)
+        assert one.library is not None
+        assert_same(loaded(function, one.library), function)
+
+
+def test_a_process_that_ends_ends_its_compiler(tmp_path: Path) -> None:
+    compiler, began, alive = (tmp_path / name for name in ("cc", "began", "alive"))
+    os.mkfifo(alive)
+    compiler.write_text(f"#!/bin/sh\nexec 3<>{alive}\ntouch {began}\nexec sleep 600\n")
+    compiler.chmod(0o755)
+    program = (
+        "import time, casadi as ca; from pathlib import Path\n"
+        "from motion_node.nlp.compiled import MachineCode\n"
+        "x = ca.MX.sym('x', 3)\n"
+        "coming = MachineCode(ca.Function('some', [x], [ca.sin(x)]))\n"
+        f"while not Path({str(began)!r}).exists(): time.sleep(0.01)\n"
+    )
+    path = f"{tmp_path}:{os.environ['PATH']}"
+    subprocess.run(
+        [sys.executable, "-c", program],
+        env={**os.environ, "PATH": path, "XDG_CACHE_HOME": str(tmp_path)},
+        check=True,
+        timeout=120,
+    )
+    assert nobody_writes(alive)
+
+
+def nobody_writes(pipe: Path) -> bool:
+    """Whether nobody has a named pipe open, or everybody closes it within a minute."""
+    reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        with contextlib.suppress(BlockingIOError):
+            return os.read(reading, 1) == b""
+        return bool(select.select([reading], [], [], 60.0)[0]) and os.read(reading, 1) == b""
+    finally:
+        os.close(reading)

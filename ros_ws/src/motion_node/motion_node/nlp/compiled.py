@@ -3,19 +3,23 @@
 
 What was compiled is kept in ``~/.cache/motion_node`` (or below ``XDG_CACHE_HOME``) by its content.
 Where there is no compiler, or no place to keep anything, functions of casadi stay as they are, at
-four times the time, and what has C has a slower way in Python beside it.
+four times the time, and what has C has a slower way in Python beside it. So it is with large ones
+until their machine code has come: nobody waits for a compiler.
 """
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import ctypes
 import hashlib
 import os
+import queue
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Sequence
+import threading
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Final
@@ -32,12 +36,99 @@ FLAGS: Final = ("-fPIC", "-shared")
 TIMEOUT: Final = 60.0
 
 
+class _Compilers:
+    """Compilers that run; a process that ends takes them with it."""
+
+    def __init__(self) -> None:
+        self._lock, self._ended = threading.Lock(), False
+        self._all: set[subprocess.Popen[bytes]] = set()
+        atexit.register(self._end)
+
+    @contextlib.contextmanager
+    def started(self, command: Sequence[str]) -> Iterator[subprocess.Popen[bytes]]:
+        """Starts one, which does not outlive the block."""
+        silent = subprocess.DEVNULL
+        with self._lock:
+            if self._ended:
+                raise subprocess.SubprocessError("this process ends")
+            running = subprocess.Popen(command, stdout=silent, stderr=silent)
+            self._all.add(running)
+        try:
+            with running:
+                try:
+                    yield running
+                finally:
+                    running.kill()
+        finally:
+            self._all.discard(running)
+
+    def _end(self) -> None:
+        with self._lock:
+            self._ended = True
+            for running in self._all:
+                running.kill()
+
+
+_RUNNING: Final = _Compilers()
+
+
 def machine_code(function: ca.Function) -> Path | None:
     """The library that has a function of casadi under its name; None where there can be none."""
-    generator = ca.CodeGenerator(f"{function.name()}.c")
-    generator.add(function)
-    name, source = f"{function.name()}.c", generator.dump()
-    return _library({name: source}, (ca.CasadiMeta.version(), *GENERATED))
+    coming = MachineCode(function)
+    coming.ready.wait()
+    return coming.library
+
+
+class MachineCode:
+    """Machine code of a function of casadi, which is there at once if it was compiled before.
+
+    Else it is compiled in the background, after what was asked for earlier.
+
+    Attributes:
+        ready: set when it has come, or when it is clear that there will be none.
+        library: has the function under its name; None before, and where there can be none.
+    """
+
+    def __init__(self, function: ca.Function) -> None:
+        generator = ca.CodeGenerator(f"{function.name()}.c")
+        generator.add(function)
+        self._sources = {f"{function.name()}.c": generator.dump()}
+        self._flags = (ca.CasadiMeta.version(), *GENERATED)
+        self.ready = threading.Event()
+        self.library: Path | None = None
+        library = _place(self._sources, self._flags)
+        if library.exists() or _compiler() is None:
+            self.come()
+        else:
+            self.compile_later()
+
+    def compile_later(self) -> None:
+        """Has it compiled in the background."""
+        compilations().put(self)
+
+    def come(self) -> None:
+        """Compiles it now, if that has not been done."""
+        self.library = _library(self._sources, self._flags)
+        self.ready.set()
+
+
+def finish() -> None:
+    """Waits until all machine code has come that was asked for."""
+    compilations().join()
+
+
+@cache
+def compilations() -> queue.Queue[MachineCode]:
+    """What is still to compile, and the thread that does, which ends with the process."""
+    waiting: queue.Queue[MachineCode] = queue.Queue()
+
+    def work() -> None:
+        while True:
+            waiting.get().come()
+            waiting.task_done()
+
+    threading.Thread(target=work, name="compiler", daemon=True).start()
+    return waiting
 
 
 def loaded(function: ca.Function, library: Path | None) -> ca.Function:
@@ -64,13 +155,9 @@ def opened(library: Path | None) -> ctypes.CDLL | None:
 
 
 def _library(sources: dict[str, str], flags: Sequence[str]) -> Path | None:
-    compiler = shutil.which("cc") or shutil.which("gcc")
+    compiler, library = _compiler(), _place(sources, flags)
     if compiler is None:
         return None
-    content = "\n".join([*flags, *FLAGS, *sources.values()])
-    name = next(iter(sources))
-    digest = hashlib.sha256(content.encode()).hexdigest()
-    library = _folder() / f"{Path(name).stem}_{digest[:32]}.so"
     with contextlib.suppress(OSError, subprocess.SubprocessError):
         if not library.exists():
             _compile(compiler, sources, [flag for flag in flags if flag.startswith("-")], library)
@@ -78,9 +165,16 @@ def _library(sources: dict[str, str], flags: Sequence[str]) -> Path | None:
     return None
 
 
-def _folder() -> Path:
+def _compiler() -> str | None:
+    return shutil.which("cc") or shutil.which("gcc")
+
+
+def _place(sources: dict[str, str], flags: Sequence[str]) -> Path:
+    content = "\n".join([*flags, *FLAGS, *sources.values()])
+    digest = hashlib.sha256(content.encode()).hexdigest()
     cache = os.environ.get("XDG_CACHE_HOME")
-    return (Path(cache) if cache else Path.home() / ".cache") / "motion_node"
+    folder = (Path(cache) if cache else Path.home() / ".cache") / "motion_node"
+    return folder / f"{Path(next(iter(sources))).stem}_{digest[:32]}.so"
 
 
 def _compile(compiler: str, sources: dict[str, str], flags: Sequence[str], library: Path) -> None:
@@ -90,10 +184,8 @@ def _compile(compiler: str, sources: dict[str, str], flags: Sequence[str], libra
         for name, source in sources.items():
             (Path(folder) / name).write_text(source)
         code, made = Path(folder) / next(iter(sources)), Path(folder) / "made.so"
-        subprocess.run(
-            [compiler, *flags, *FLAGS, str(code), "-o", str(made), "-lm"],
-            check=True,
-            capture_output=True,
-            timeout=TIMEOUT,
-        )
+        command = [compiler, *flags, *FLAGS, str(code), "-o", str(made), "-lm"]
+        with _RUNNING.started(command) as running:
+            if running.wait(TIMEOUT) != 0:
+                raise subprocess.CalledProcessError(running.returncode, command)
         made.rename(library)

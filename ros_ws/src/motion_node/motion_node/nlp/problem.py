@@ -13,14 +13,14 @@ path with k = 2.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, floor
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from .compiled import loaded, machine_code
+from .compiled import MachineCode, loaded
 from .elastic import Elastic, Slopes
 from .program import TOLERANCE, Instance, Program
 from .rows import Demand, Rows
@@ -112,8 +112,10 @@ class KOrderProblem:
         self._hessian = full[np.ix_(free, free)]
         self._coupling = full[np.ix_(free, fixed_rows)]
         self._constant = full[np.ix_(fixed_rows, fixed_rows)]
-        self._made = self._program()
-        self._solver = solver(self._made)
+        self._made, self._make_solver = self._program(), solver
+        self._coming: MachineCode | None = MachineCode(self._made.jacobian)
+        if not self._take_machine_code():
+            self._solver = solver(self._made)
         self._elastic: dict[int, Elastic] = {}
 
     def _unknowns(self, steps: NDArray[np.int_]) -> NDArray[np.int_]:
@@ -177,9 +179,19 @@ class KOrderProblem:
         jacobian = ca.Function(
             "nlp_jac_g", [z, p], [g, ca.vertcat(*jacobians)], ["x", "p"], ["g", "jac_g_x"]
         )
-        library = machine_code(jacobian)
-        jacobian = loaded(jacobian, library)
-        return Program(z, p, cost, g, self._hessian, jacobian, library, make_curvature)
+        return Program(z, p, cost, g, self._hessian, jacobian, None, make_curvature)
+
+    def _take_machine_code(self) -> bool:
+        """Goes over to machine code when there is some that was not there before."""
+        if self._coming is None or not self._coming.ready.is_set():
+            return False
+        library, self._coming = self._coming.library, None
+        if library is None:
+            return False
+        jacobian = loaded(self._made.jacobian, library)
+        self._made = replace(self._made, jacobian=jacobian, library=library)
+        self._solver = self._make_solver(self._made)
+        return True
 
     def solve(
         self,
@@ -197,6 +209,7 @@ class KOrderProblem:
             lower, upper: joint limits, broadcast to (steps, n) [rad].
             thorough: whether, of several solvers in turn, those behind the first one are asked.
         """
+        self._take_machine_code()
         instance = self._instance(x, demands, lower, upper)
         given = x[self.fixed].ravel()
         solver = self._solver if thorough else quickest(self._solver)
