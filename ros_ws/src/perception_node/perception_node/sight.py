@@ -49,7 +49,8 @@ def sight_problem(
         with np.errstate(invalid="ignore"):
             known = (depth > 0.0) & np.isfinite(depth)
     shown = known | (segments.label_image > 0)
-    black = ~shown & (observation.rgb.max(axis=2) <= BLACK)
+    black = ~shown
+    black[black] = observation.rgb[black].max(axis=1, initial=0) <= BLACK
     for place in places.places:
         name = base_name(place.index)
         if not _inside(camera, _box(place, 0.0, FOOT)):

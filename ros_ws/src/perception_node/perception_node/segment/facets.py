@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -129,12 +129,9 @@ def without_leaks(facets: Facets, height: Array, reach: int) -> Facets:
     owner[pieces[wide]] = facets.ids[wide]
     largest[owner[order]] = order
     low, high = np.full(facets.count + 1, -np.inf), np.full(facets.count + 1, np.inf)
-    of_largest = wide & (largest[facets.ids] == pieces)
-    for facet in np.flatnonzero(largest):
-        known = height[of_largest & (facets.ids == facet)]
-        known = known[np.isfinite(known)]
-        if len(known):
-            low[facet], high[facet] = np.percentile(known, STRAY)
+    of_largest = wide & (largest[facets.ids] == pieces) & np.isfinite(height)
+    for facet, known in by_number(facets.ids[of_largest], height[of_largest]):
+        low[facet], high[facet] = np.percentile(known, STRAY)
     with np.errstate(invalid="ignore"):
         beyond = (height < low[facets.ids] - LEAK) | (height > high[facets.ids] + LEAK)
     beyond &= facets.ids > 0
@@ -142,51 +139,86 @@ def without_leaks(facets: Facets, height: Array, reach: int) -> Facets:
     kept = (facets.ids > 0) & (wide | ~leaks[facets.ids])
     count, pieces = _connected(kept, same)
     shared = np.where(wide, pieces, 0)
-    for _ in range(2 * reach):
-        spread(shared, facets.ids > 0)
+    spread(shared, facets.ids > 0, 2 * reach)
     return Facets(pieces, count - 1, _borders(count, pieces, shared))
+
+
+def by_number(numbers: NDArray[Any], values: Array) -> Iterator[tuple[int, Array]]:
+    """Values by their numbers, those that there are: shapes (n,), (n,)."""
+    order = np.argsort(numbers, kind="stable")
+    found, begins = np.unique(numbers[order], return_index=True)
+    yield from zip(found.tolist(), np.split(values[order], begins[1:]))
 
 
 def _connected(pixels: Mask, links: Sequence[Mask]) -> tuple[int, Ids]:
     """How many pieces linked pixels make, with that of no pixel, and the piece of each, from 1."""
-    height, width = pixels.shape
+    ids = np.zeros(pixels.shape, np.int32)
+    left, top, width, height = cv2.boundingRect(pixels.view(np.uint8))
+    if width == 0:
+        return 1, ids
+    box = np.s_[top : top + height, left : left + width]
+    inner = pixels[box]
     # Pixels on even rows and columns, the links between neighbours on odd ones.
     lattice = np.zeros((2 * height - 1, 2 * width - 1), np.uint8)
-    lattice[::2, ::2] = pixels
+    lattice[::2, ::2] = inner
     for axis, linked in enumerate(links):
         low, high = _sides(axis)
-        lattice[_between(axis)] = linked & pixels[low] & pixels[high]
+        between = linked[top : top + height - (axis == 0), left : left + width - (axis == 1)]
+        lattice[_between(axis)] = between & inner[low] & inner[high]
     count, numbers = cv2.connectedComponents(lattice, connectivity=4)
-    return count, numbers[::2, ::2].astype(np.int32)
+    ids[box] = numbers[::2, ::2]
+    return count, ids
 
 
 def spread(
     labels: NDArray[Any],
     free: Mask,
+    times: int,
     links: Sequence[Mask] | None = None,
-    may: Callable[[NDArray[Any], tuple[slice, ...]], Mask] | None = None,
+    may: Callable[[NDArray[Any], NDArray[np.intp]], Mask] | None = None,
 ) -> None:
-    """Gives free pixels without a label that of a neighbour: the one below, else beside, or above.
+    """Gives free pixels without a label that of a neighbour: the one below, else above, or beside.
 
     What is seen above a face is its lid or the ledge on which the next one stands.
 
     Args:
         labels: shape (h, w), changed.
         free: which may be given one.
+        times: how many pixels far at most.
         links: by axis, which neighbours labels pass between, (h - 1, w), (h, w - 1); None: all.
-        may: whether pixels, given as slices, may have such labels; None: they may.
+        may: whether pixels, given as indices of the flattened image, may have such labels; None:
+            they may.
     """
-    found = labels.copy()
-    for axis in (0, 1):
-        low, high = _sides(axis)
-        for to, source in ((low, high), (high, low)):
-            takes = free[to] & (found[to] == 0) & (labels[source] > 0)
-            if links is not None:
-                takes &= links[axis]
+    height, width = labels.shape
+    # Only the pixels without a label are looked at, which are few; a frame of no label is around.
+    todo = np.flatnonzero(free & (labels == 0))
+    rows, columns = np.divmod(todo, width)
+    framed = np.zeros((height + 2, width + 2), labels.dtype)
+    framed[1:-1, 1:-1] = labels
+    flat = framed.ravel()
+    at = (rows + 1) * (width + 2) + columns + 1
+    beside = at + np.array([[width + 2], [-width - 2], [1], [-1]])
+    passes = np.ones(beside.shape, bool)
+    if links is not None:
+        for axis in (0, 1):
+            linked = np.zeros((height + 1, width + 1), bool)
+            linked[1:, 1:][_sides(axis)[0]] = links[axis]
+            passes[2 * axis] = linked[rows + 1, columns + 1]
+            passes[2 * axis + 1] = linked[rows + axis, columns + 1 - axis]
+    for _ in range(times):
+        given = np.zeros(len(todo), labels.dtype)
+        for sources, passing in zip(beside, passes):
+            label = flat[sources]
+            takes = passing & (label > 0) & (given == 0)
             if may is not None:
-                takes &= may(labels[source], to)
-            found[to][takes] = labels[source][takes]
-    labels[...] = found
+                takes[takes] = may(label[takes], todo[takes])
+            given[takes] = label[takes]
+        left = given == 0
+        if left.all():
+            break
+        flat[at] = given
+        todo, at, beside, passes = todo[left], at[left], beside[:, left], passes[:, left]
+    labels[...] = framed[1:-1, 1:-1]
 
 
 def on_one_body(points: Array, depth: Array) -> list[Mask]:

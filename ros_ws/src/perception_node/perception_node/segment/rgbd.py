@@ -27,6 +27,7 @@ from .facets import (
     Facets,
     Look,
     alike,
+    by_number,
     find_facets,
     on_one_body,
     spread,
@@ -180,19 +181,20 @@ def _take_strips(labels: NDArray[np.uint16], pieces: Facets, region: Region, wid
     """
     height = region.points[..., 2]
     low, high = np.zeros(int(labels.max()) + 1), np.zeros(int(labels.max()) + 1)
-    for label in range(1, len(low)):
-        low[label], high[label] = np.percentile(height[labels == label], STRAY)
+    of_blocks = labels > 0
+    for label, own in by_number(labels[of_blocks], height[of_blocks]):
+        low[label], high[label] = np.percentile(own, STRAY)
 
-    def as_high(given: NDArray[np.uint16], at: tuple[slice, ...]) -> Mask:
+    def as_high(given: NDArray[np.uint16], at: NDArray[np.intp]) -> Mask:
+        own = height.flat[at]
         with np.errstate(invalid="ignore"):
-            above = height[at] > low[given] - SAME_HEIGHT
-            return np.asarray(above & (height[at] < high[given] + SAME_HEIGHT))
+            above = own > low[given] - SAME_HEIGHT
+            return np.asarray(above & (own < high[given] + SAME_HEIGHT))
 
     near = on_one_body(region.points, region.depth)
     alike = [link & same for link, same in zip(near, pieces.links())]
     for links, may in ((alike, as_high), (near, as_high), (near, None)):
-        for _ in range(width):
-            spread(labels, pieces.ids > 0, links, may)
+        spread(labels, pieces.ids > 0, width, links, may)
 
 
 def _grow_down(
@@ -202,17 +204,18 @@ def _grow_down(
 
     They are below it, not before it on the table.
     """
-    low, high = np.s_[:-1], np.s_[1:]
-    beside = points[..., :2].copy()
-    for _ in range(labels.shape[0]):
-        grows = (labels[low] > 0) & (labels[high] == 0) & foot[high]
+    rows, columns = np.nonzero((labels[:-1] > 0) & (labels[1:] == 0) & foot[1:])
+    above = points[rows, columns, :2]
+    while len(rows):
         with np.errstate(invalid="ignore"):
-            away = np.abs(points[high][grows][:, :2] - beside[low][grows]).max(axis=1, initial=0.0)
-        grows[grows] = alike(look, np.nonzero(grows), (1, 0)) & (away < BEFORE)
-        if not grows.any():
-            return
-        labels[high][grows] = labels[low][grows]
-        beside[high][grows] = beside[low][grows]
+            away = np.abs(points[rows + 1, columns, :2] - above).max(axis=1, initial=0.0)
+        grows = alike(look, (rows, columns), (1, 0)) & (away < BEFORE)
+        rows, columns, above = rows[grows] + 1, columns[grows], above[grows]
+        labels[rows, columns] = labels[rows - 1, columns]
+        goes_on = rows + 1 < len(labels)
+        goes_on[goes_on] &= foot[rows[goes_on] + 1, columns[goes_on]]
+        goes_on[goes_on] &= labels[rows[goes_on] + 1, columns[goes_on]] == 0
+        rows, columns, above = rows[goes_on], columns[goes_on], above[goes_on]
 
 
 def _measure(facets: Facets, look: Look, region: Region, smear: int, strip: int) -> _Table:

@@ -57,11 +57,13 @@ def unseen(region: Region, look: Look, picture_area: int) -> Mask:
     Args:
         picture_area: of the picture that the region is a part of [px].
     """
-    everything = np.ones(region.depth.shape, bool)
+    everything, least = np.ones(region.depth.shape, bool), MIN_AREA * picture_area
+    if np.count_nonzero(~np.isfinite(region.depth)) <= (1.0 - MIN_DEPTH_SHARE) * least:
+        return ~everything
     facets = find_facets(everything, look, region.depth)
     pixels = np.bincount(facets.ids.ravel(), minlength=facets.count + 1)
     known = np.bincount(facets.ids[np.isfinite(region.depth)], minlength=facets.count + 1)
-    bare = (pixels >= MIN_AREA * picture_area) & (known < MIN_DEPTH_SHARE * pixels)
+    bare = (pixels >= least) & (known < MIN_DEPTH_SHARE * pixels)
     behind = bare & (pixels > MAX_PART * everything.size)
     for edge in (facets.ids[0], facets.ids[:, 0], facets.ids[:, -1]):
         behind[edge] |= bare[edge]
