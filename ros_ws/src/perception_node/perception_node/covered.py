@@ -17,6 +17,7 @@ from scene_graph import Place
 from .blocks import Blocks, BlockSurface, measure
 from .config import PerceptionConfig
 from .errors import BadImageError, UnmeasuredError
+from .masks import pixels_of
 from .observation import Observation
 from .places.occlusion import box_region
 from .segment import Segment, Segments
@@ -297,7 +298,7 @@ def _points(part: Mask, observation: Observation) -> NDArray[np.float64]:
     """Where pixels are in world, those without depth left out, shape (n, 3) [m]."""
     camera, depth = observation.camera, _known_depth(observation)
     assert camera is not None
-    rows, columns = np.nonzero(part & np.isfinite(depth))
+    rows, columns = pixels_of(part & np.isfinite(depth))
     rays = camera.rays_world(np.stack([columns, rows], axis=-1))
     return np.asarray(camera.position_world + rays * depth[rows, columns, None])
 
@@ -311,7 +312,7 @@ def _with_slivers(
     labelled = segments.label_image > 0
     near = np.where(labelled, depth, np.inf).astype(np.float32)
     nearest = cv2.erode(near, np.ones((2 * RIM + 1,) * 2, np.uint8))
-    rows, columns = np.nonzero(~labelled & np.isfinite(depth))
+    rows, columns = pixels_of(~labelled & np.isfinite(depth))
     rays = camera.rays_world(np.stack([columns, rows], axis=-1))
     points = camera.position_world + rays * depth[rows, columns, None]
     feet = np.array([place.position_world for place in places])

@@ -12,9 +12,10 @@ from scene_graph import BlockPose, Place, base_name
 
 from .camera import PinholeCamera
 from .config import PerceptionConfig
+from .masks import pixels_of
 from .observation import Observation
 from .places import Places
-from .places.occlusion import box_region
+from .places.occlusion import box_part
 from .segment import Segments
 
 Mask = NDArray[np.bool_]
@@ -55,17 +56,14 @@ def sight_problem(
         name = base_name(place.index)
         if not _inside(camera, _box(place, 0.0, FOOT)):
             return f"{name} is not in the picture; turn the camera, or correct its calibration"
-        if (
-            depth is not None
-            and _share(~shown, box_region(camera, _box(place, 0.0, FOOT))) > MAX_UNKNOWN
-        ):
+        if depth is not None and _share(~shown, camera, _box(place, 0.0, FOOT)) > MAX_UNKNOWN:
             return (
                 f"whether anything stands on {name} is not known, as there is no depth; check the "
                 "depth camera, and that nothing is before it"
             )
         width = 2.0 * config.column_half_width
         column = _box(place, 0.0, (width, width, config.column_height))
-        if _share(black, box_region(camera, column)) > MAX_BLACK:
+        if _share(black, camera, column) > MAX_BLACK:
             bare = "" if depth is None else " and has no depth"
             return (
                 f"part of what is over {name} is black{bare}; is the lens partly covered, or part "
@@ -106,7 +104,9 @@ def _is_higher(
     assert observation.depth is not None
     width = 2.0 * config.column_half_width
     ends = _box(place, config.column_height - ABOVE, (width, width, 2.0 * ABOVE))
-    rows, columns = np.nonzero(box_region(camera, ends) & known)
+    part, region = box_part(camera, ends)
+    rows, columns = pixels_of(region & known[part])
+    rows, columns = rows + part[0].start, columns + part[1].start
     rays = camera.rays_world(np.stack([columns, rows], axis=-1))
     points = camera.position_world + rays * observation.depth[rows, columns, None]
     off = points - place.position_world
@@ -135,5 +135,7 @@ def _cut_off(segments: Segments) -> str:
     return ""
 
 
-def _share(mask: Mask, region: Mask) -> float:
-    return int(np.count_nonzero(mask & region)) / max(1, int(np.count_nonzero(region)))
+def _share(mask: Mask, camera: PinholeCamera, box: BlockPose) -> float:
+    """Of the pixels behind which a box may be the share that is in a mask."""
+    part, region = box_part(camera, box)
+    return int(np.count_nonzero(mask[part] & region)) / max(1, int(np.count_nonzero(region)))

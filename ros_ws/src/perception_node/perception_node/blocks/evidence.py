@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from perception_node.camera import PinholeCamera
 from perception_node.errors import BadImageError
+from perception_node.masks import pixels_of
 from perception_node.segment import Segment, Segments
 
 Array = NDArray[np.float64]
@@ -149,7 +150,7 @@ def covering(
     """For each block the labels of those that may stand on it, directly or not."""
     middles = np.full((len(segments), 3), np.nan)
     for index, segment in enumerate(segments):
-        rows, columns = np.nonzero(segment.part)
+        rows, columns = pixels_of(segment.part)
         found = depth[rows, columns]
         known = (found > 0.0) & np.isfinite(found)
         if known.any():
@@ -180,7 +181,7 @@ def _ends(mask: Mask, goes_on: Mask, depth: Array, noise: float) -> list[tuple[A
         tolerance = IN_FRONT + 4.0 * noise * np.nan_to_num(depth[mine]) ** 2
         with np.errstate(invalid="ignore"):
             hidden = depth[mine] - depth[other] > tolerance
-        rows, columns = np.nonzero(border & ~hidden)
+        rows, columns = pixels_of(border & ~hidden)
         point = np.stack([columns, rows], axis=-1).astype(np.float64)
         # Row or column of the block's own pixel, and half a pixel towards the other one.
         point[:, 1 - axis] += (1.0 if step < 0 else 0.0) + 0.5 * step

@@ -166,6 +166,20 @@ class _Problem:
             self.rows, self.values,
         )  # fmt: skip
 
+    def repeated(self, times: int) -> _Problem:
+        """The same blocks so many times, one after another."""
+
+        def again(array: Array) -> Array:
+            return np.concatenate([array] * times)
+
+        seen = self.seen
+        points, rays, noise = again(seen.points), again(seen.rays), again(seen.noise)
+        return _Problem(
+            self.model, self.camera, Seen(seen.origin, points, rays, noise, seen.floor),
+            again(self.used), again(self.outline), again(self.inverse),
+            again(self.rows), again(self.values),
+        )  # fmt: skip
+
     def at(self, parameters: Array) -> _Linearised:
         surface = self.model.surface(parameters, self.seen)
         outside, outside_slopes = self._outside(parameters)
@@ -290,14 +304,20 @@ def _covariances(problem: _Problem, parameters: Array, found: _Linearised) -> Ar
     """
     information = found.information()
     covariances = np.linalg.inv(information)
-    origin = problem.camera.position_world
-    for directions in problem.model.hidden(parameters, origin):
-        costs = [problem.at(parameters + way * PROBE * directions).cost for way in (1, -1)]
-        rises = np.maximum(np.minimum(*costs) - found.cost, 1e-3)
-        # A parabola that rises by this much over the step has this variance.
-        variances = PROBE**2 / (2.0 * rises)
+    hidden = problem.model.hidden(parameters, problem.camera.position_world)
+    if not len(hidden):
+        return np.asarray(covariances, np.float64)
+    # All at once, both ways of each direction as blocks of their own.
+    changes = PROBE * np.concatenate([hidden, -hidden])
+    costs = problem.repeated(len(changes)).at(
+        (parameters + changes).reshape(-1, parameters.shape[1])
+    )
+    rises = costs.cost.reshape(2, len(hidden), -1).min(axis=0) - found.cost
+    # A parabola that rises by this much over the step has this variance.
+    variances = PROBE**2 / (2.0 * np.maximum(rises, 1e-3))
+    for directions, variance in zip(hidden, variances):
         mine = 1.0 / np.einsum("bp,bpq,bq->b", directions, information, directions)
-        wider = np.maximum(variances - mine, 0.0)
+        wider = np.maximum(variance - mine, 0.0)
         covariances += wider[:, None, None] * directions[:, :, None] * directions[:, None]
     return np.asarray(covariances, np.float64)
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from perception_node.camera import PinholeCamera
 from perception_node.errors import BadImageError
+from perception_node.masks import pixels_of
 from perception_node.segment import Segments
 
 Array = NDArray[np.float64]
@@ -49,7 +50,7 @@ def points_around(part: Mask, outline: Array | None) -> Array:
     """Points around a mask, of its pixels' corners where no finer ones are known, (n, 2) [px]."""
     if outline is not None:
         return outline
-    rows, columns = np.nonzero(part)
+    rows, columns = pixels_of(part)
     around = np.array([[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5]])
     return (np.stack([columns, rows], -1)[:, None] + around).reshape(-1, 2)
 
@@ -147,12 +148,12 @@ def _contacts(
     mine = part[box].astype(np.uint8)
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * gap + 1,) * 2)
     around = np.where(cv2.dilate(mine, disc) > 0, numbers[box], -1)
-    rows, columns = np.nonzero(mine)
+    rows, columns = pixels_of(mine)
     middle = corner + [columns.mean(), rows.mean()]
     for other in np.unique(around):
         if other in (-1, index):
             continue
-        rows, columns = np.nonzero(around == other)
+        rows, columns = pixels_of(around == other)
         points = corner + np.stack([columns, rows], -1)
         aside = points.mean(axis=0) - middle
         yield int(other), points.astype(float), aside / max(float(np.hypot(*aside)), 1e-9)

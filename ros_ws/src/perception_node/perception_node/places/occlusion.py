@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from perception_node.camera import PinholeCamera
 from perception_node.config import PerceptionConfig
+from perception_node.masks import pixels_of
 from perception_node.observation import Observation
 from perception_node.segment import Segments
 from scene_graph import BlockPose
@@ -56,7 +57,7 @@ class Columns:
         """
         heights = []
         for foot, region in zip(self._feet(), regions):
-            rows, across = np.nonzero(hidden & region)
+            rows, across = pixels_of(hidden & region)
             stray = int(STRAY * np.count_nonzero(region))
             if len(rows) <= stray:
                 heights.append(self.height)
@@ -124,11 +125,9 @@ class Occlusion:
         """How much of each block's outline is not hidden, shape (N,), 0..1; 1 without a pose."""
         if self.hidden is None or camera is None or not self.hidden.any():
             return np.ones(len(poses))
+        parts = [None if pose is None else box_part(camera, pose) for pose in poses]
         return np.array(
-            [
-                1.0 if pose is None else 1.0 - _share(self.hidden, box_region(camera, pose))
-                for pose in poses
-            ]
+            [1.0 if part is None else 1.0 - _share(self.hidden[part[0]], part[1]) for part in parts]
         )
 
 
@@ -158,7 +157,7 @@ def find_occlusion(
     with np.errstate(invalid="ignore"):
         near = (depth > 0) & (depth < columns.greatest_depth(camera))
     unlabelled = segments.label_image == 0
-    rows, across = np.nonzero(np.logical_or.reduce(regions) & unlabelled & near)
+    rows, across = pixels_of(np.logical_or.reduce(regions) & unlabelled & near)
     rays = camera.rays_world(np.stack([across, rows], axis=-1))
     points = camera.position_world + rays * depth[rows, across, None]
     hidden = np.zeros(depth.shape, bool)
@@ -192,16 +191,29 @@ def box_region(camera: PinholeCamera, box: BlockPose) -> Mask:
     Returns:
         Shape (height, width).
     """
+    whole = np.zeros((camera.height, camera.width), bool)
+    part, region = box_part(camera, box)
+    whole[part] = region
+    return whole
+
+
+def box_part(camera: PinholeCamera, box: BlockPose) -> tuple[tuple[slice, slice], Mask]:
+    """The rows and columns of the picture in which those pixels are, and which of them they are."""
     corners = np.array([[i, j, k] for i in (-0.5, 0.5) for j in (-0.5, 0.5) for k in (-0.5, 0.5)])
     corners = corners * box.size
     c, s = np.cos(box.yaw), np.sin(box.yaw)
     corners = corners @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) + box.position_world
-    region = np.zeros((camera.height, camera.width), np.uint8)
     pixels = camera.project(corners)
-    if np.isfinite(pixels).all():
-        hull = cv2.convexHull(np.round(np.clip(pixels, -1e6, 1e6)).astype(np.int32))
-        cv2.fillConvexPoly(region, hull, 1)
-    return region.astype(bool)
+    if not np.isfinite(pixels).all():
+        return np.s_[0:0, 0:0], np.zeros((0, 0), bool)
+    hull = cv2.convexHull(np.round(np.clip(pixels, -1e6, 1e6)).astype(np.int32))[:, 0]
+    ends = [camera.width, camera.height]
+    left, top = np.clip(hull.min(axis=0), 0, ends).tolist()
+    right, bottom = np.clip(hull.max(axis=0) + 1, 0, ends).tolist()
+    region = np.zeros((bottom - top, right - left), np.uint8)
+    if region.size:
+        cv2.fillConvexPoly(region, hull - (left, top), 1)
+    return np.s_[top:bottom, left:right], region.view(bool)
 
 
 def _share(hidden: Mask, region: Mask) -> float:

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from perception_node.masks import pixels_of
 from perception_node.observation import Observation
 from perception_node.segment import Segments
 
@@ -37,7 +38,7 @@ def table_problem(observation: Observation, segments: Segments, places: Places) 
     step = max(1, round((depth.size / LOOKED_AT) ** 0.5))
     some = depth[::step, ::step]
     known = (segments.label_image[::step, ::step] == 0) & np.isfinite(some) & (some > 0.0)
-    rows, columns = np.nonzero(known)
+    rows, columns = pixels_of(known)
     rows, columns = step * rows, step * columns
     rays = camera.rays_world(np.stack([columns, rows], axis=-1))
     with np.errstate(divide="ignore", invalid="ignore"):

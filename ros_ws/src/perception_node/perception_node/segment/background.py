@@ -15,6 +15,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from perception_node.masks import pixels_of
+
 from .front_view import PITCH, FrontView
 
 Mask = NDArray[np.bool_]
@@ -64,7 +66,7 @@ class _Span:
     """Where a mask is: its columns, and its upper and lower end [px]."""
 
     def __init__(self, mask: Mask) -> None:
-        rows, columns = np.nonzero(mask)
+        rows, columns = pixels_of(mask)
         self.high, self.low = (int(value) for value in np.percentile(rows, [1, 99]))
         self.left, self.right = (int(value) for value in np.percentile(columns, [2, 98]))
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from perception_node.clustering import cluster_on_line
 from perception_node.errors import BadImageError
+from perception_node.masks import pixels_of
 
 from .segments import MIN_AREA
 
@@ -88,7 +89,7 @@ def without_specks(labels: Labels) -> Labels:
         return labels
     out = labels.copy()
     while speck.any():
-        rows, columns = np.nonzero(speck)
+        rows, columns = pixels_of(speck)
         most = np.zeros(len(rows), np.float32)
         for value in values:
             around = cv2.boxFilter(

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception_node.errors import BadImageError
+from perception_node.masks import pixels_of
 from perception_node.observation import Observation
 
 from .background import stands_behind
@@ -84,7 +85,7 @@ def find_in_rgb(observation: Observation, volume: Volume | None = None) -> Segme
 
 def _check_one_color(rgb: NDArray[np.uint8], segment: Segment) -> None:
     """Raises BadImageError if the upper and the lower part of a mask have other hues."""
-    rows, columns = np.nonzero(segment.part)
+    rows, columns = pixels_of(segment.part)
     low, high = np.quantile(rows, [PARTS, 1.0 - PARTS])
     hues = []
     for part in (rows <= low, rows >= high):
@@ -147,7 +148,7 @@ class Field:
             here = (slice(None),) * axis + (slice(None, -1),)
             next_one = (slice(None),) * axis + (slice(1, None),)
             crossing = (values[here] > 0.0) != (values[next_one] > 0.0)
-            rows, columns = np.nonzero(crossing)
+            rows, columns = pixels_of(crossing)
             share = values[here][crossing] / (values[here][crossing] - values[next_one][crossing])
             along = np.stack([columns, rows], axis=-1).astype(np.float64)
             along[:, 1 - axis] += share
@@ -188,7 +189,7 @@ def instances(surety: Floats, middles: Floats) -> tuple[Field, ...]:
         surety: that a pixel is of a block rather than of anything else, -1..1, shape (h, w).
         middles: from each pixel, right and down, shape (2, h, w) [px].
     """
-    rows, columns = np.nonzero(surety > 0.0)
+    rows, columns = pixels_of(surety > 0.0)
     if not len(rows):
         return ()
     votes = np.stack([columns, rows]) + middles[:, rows, columns]
@@ -242,5 +243,5 @@ def _peaks(votes: Floats, weights: Floats, shape: tuple[int, ...]) -> Floats:
     heat = cv2.GaussianBlur(count.reshape(size).astype(np.float32), (0, 0), SPREAD)
     window = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * APART + 1,) * 2)
     top = (heat == cv2.dilate(heat, window)) & (heat > LEAST / (2.0 * np.pi * (2.0 * SPREAD) ** 2))
-    rows, columns = np.nonzero(top)
+    rows, columns = pixels_of(top)
     return CELL * np.stack([columns, rows], axis=-1).astype(np.float32)

@@ -19,6 +19,7 @@ from scipy.sparse.csgraph import connected_components
 
 from perception_node.alignment import smear_of
 from perception_node.errors import BadImageError
+from perception_node.masks import pixels_of
 from perception_node.observation import Observation
 
 from .facets import (
@@ -204,7 +205,7 @@ def _grow_down(
 
     They are below it, not before it on the table.
     """
-    rows, columns = np.nonzero((labels[:-1] > 0) & (labels[1:] == 0) & foot[1:])
+    rows, columns = pixels_of((labels[:-1] > 0) & (labels[1:] == 0) & foot[1:])
     above = points[rows, columns, :2]
     while len(rows):
         with np.errstate(invalid="ignore"):

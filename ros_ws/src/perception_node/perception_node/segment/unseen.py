@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from perception_node.errors import BadImageError
+from perception_node.masks import pixels_of
 
 from .facets import Look, Mask, find_facets
 from .region import Region
@@ -38,7 +39,7 @@ def check_all_seen(
         missed &= ~labelled
         if np.count_nonzero(missed) < MIN_AREA * picture_area:
             return
-    rows, columns = np.nonzero(missed)
+    rows, columns = pixels_of(missed)
     if len(rows):
         row = int(np.median(rows)) + region.box[0].start
         column = int(np.median(columns)) + region.box[1].start
