@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from results_file import Row
 from torch import nn
 
+from perception_node.latent.answering import SHIFTS
 from perception_node.latent.programs import ProgramNetwork, SymbolicNetwork
 from perception_node.latent.qa_trainer import QaConfig, QaTrainer, ReaderConfig, ReaderTrainer
 from perception_node.latent.state_encoder import StateEncoder
@@ -102,7 +103,9 @@ def baseline_rows(train: ClevrSet, test: ClevrSet) -> list[Row]:
 def reader_rows(reader: ReaderTrainer, test: ClevrSet) -> list[Row]:
     """What the answerer reads off the images themselves: as it is sure of it, and as a graph."""
     answerer, seconds = reader.answerer, np.round(reader.seconds)
-    told = f"{seconds} s of training on {len(reader.batches.asked.questions)} questions"
+    views = len(SHIFTS) * len(reader.reader.ways)
+    questions = len(reader.batches.asked.questions)
+    told = f"in {views} views; {seconds} s of training on {questions} questions"
     row, _ = _answers_row("images", "from images", None, reader.reader, reader.config, test, told)
     rows = [row]
     if isinstance(answerer, ProgramNetwork):
@@ -124,9 +127,12 @@ def qa_rows(trainer: QaTrainer, test: ClevrSet) -> tuple[list[Row], NDArray[np.b
     )
     if full:
         row = replace(row, required=bound, thesis=accuracy)
-    told = f"{config.epochs} epochs, {np.round(trainer.seconds)} s of training"
-    if config.setting != "reconstruction":
-        told += ", encoder and answerer going on from reconstruction and from images"
+    alone = config.setting == "reconstruction"
+    told = f"{config.epochs} epochs, {np.round(trainer.seconds)} s of training, " + (
+        "read by the answerer of images as it is"
+        if alone
+        else "encoder and answerer going on from reconstruction and from images"
+    )
     error_row = Row(
         label, "reconstruction error", found, "", len(test.images),
         required=error_bound if full else None, thesis=error if full else None, note=told,
