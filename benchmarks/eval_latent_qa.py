@@ -16,7 +16,14 @@ from typing import Final
 import torch
 from latent.blocks_world import DataError
 from latent.clevr.dataset import read_clevr
-from latent.qa_training import baseline_rows, qa_rows, reader_rows, train_qa, train_reader
+from latent.qa_training import (
+    baseline_rows,
+    gain_row,
+    qa_rows,
+    reader_rows,
+    train_qa,
+    train_reader,
+)
 from latent.trainings import StoppedError
 from results_file import Row, print_rows, write_result
 
@@ -73,11 +80,17 @@ def measure(options: argparse.Namespace) -> list[Row]:
             name = f"{setting}_{encoder.channels}_{options.answerer}_{options.seed}"
             return train_qa(options.runs / name, config, reader, start)
 
+        right = {}
         for setting in options.settings:
             # The reader cannot be asked of what shows nothing yet: the others go on from there.
             alone = setting == "reconstruction"
             start = None if alone else trained("reconstruction", None, encoder)
-            rows += qa_rows(trained(setting, start, encoder), test)
+            found, right[setting] = qa_rows(trained(setting, start, encoder), test)
+            rows += found
+        others = right.pop("reconstruction", None)
+        if others is not None:
+            for setting, mine in right.items():
+                rows.append(gain_row(f"{setting}, o = {channels}", mine, others, test))
     return rows
 
 

@@ -4,8 +4,13 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
+from latent.clevr.dataset import ClevrSet
+from latent.clevr.programs import Step
+from latent.clevr.questions import Question
 from latent.planning import carried_out, majority, pairs, plan_all
 from latent.prediction import CopyState, NearestTransition, accuracy
+from latent.qa_training import gain_row
 from latent.stability import noisy, uniqueness
 
 from planner_node.action_models import ObservedModel
@@ -69,3 +74,13 @@ def test_moves_are_carried_out_until_one_is_impossible() -> None:
 def test_pairs_are_of_different_states() -> None:
     drawn = pairs(300, 4, 1000)
     assert (drawn[:, 0] != drawn[:, 1]).all() and set(drawn.ravel().tolist()) == {0, 1, 2, 3}
+
+
+def test_questions_about_one_scene_count_as_failing_together() -> None:
+    question = Question("existence", (), Step("scene"), "yes")
+    test = ClevrSet(np.zeros((2, 1, 1, 3), np.uint8), ((), ()), ((question,) * 2,) * 2)
+    right, others = np.ones(4, np.bool_), np.array([False, False, True, True])
+    row = gain_row("kl", right, others, test)
+    half = 1.96 * np.hypot(1.0, 1.0) / 4
+    assert row.spread == pytest.approx((0.5 - half, 0.5 + half))
+    assert row.value == pytest.approx(0.5 - half) and not row.holds

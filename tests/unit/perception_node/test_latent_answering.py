@@ -10,7 +10,13 @@ import pytest
 import torch
 
 from perception_node.errors import WeightsError
-from perception_node.latent.answering import ANSWERERS, READ_PROGRAMS, BothWays
+from perception_node.latent.answering import (
+    ANSWERERS,
+    READ_PROGRAMS,
+    SHIFTS,
+    ManyViews,
+    moved,
+)
 from perception_node.latent.qa_trainer import (
     SETTINGS,
     Asked,
@@ -94,17 +100,30 @@ def test_a_setting_leaves_the_reader_of_the_others_as_it_is() -> None:
     assert all(torch.equal(before[name], item) for name, item in read.reader.state_dict().items())
 
 
-def test_both_ways_are_held_equally_likely() -> None:
+def test_all_views_are_held_equally_likely() -> None:
     torch.manual_seed(0)
     one = ANSWERERS["film"](WORDS, ANSWERS).eval()
     images, owners = torch.rand(2, 3, 128, 128), torch.tensor([0, 1])
     questions, swapped = torch.tensor([[1, 2], [1, 3]]), torch.tensor([[1, 3], [1, 2]])
-    both = BothWays(one, WORDS, (("dark", "bright"),))(images, questions, owners)
-    ways = one(images, questions, owners), one(images.flip(3), swapped, owners)
-    expected = (ways[0].softmax(1) + ways[1].softmax(1)) / 2.0
-    assert torch.allclose(both.exp(), expected, atol=1e-6)
-    alone = BothWays(one, WORDS, ())(images, questions, owners)
-    assert torch.allclose(alone.exp(), ways[0].softmax(1), atol=1e-6)
+    near = np.pad(images.numpy(), ((0, 0), (0, 0), (1, 1), (1, 1)), "edge")
+    shifted = [
+        torch.from_numpy(near[:, :, top : top + 128, left : left + 128].copy())
+        for top in range(3)
+        for left in range(3)
+    ]
+    plain = torch.stack([one(view, questions, owners).softmax(1) for view in shifted])
+    turned = torch.stack([one(view.flip(3), swapped, owners).softmax(1) for view in shifted])
+    all_views = ManyViews(one, WORDS, (("dark", "bright"),))(images, questions, owners)
+    assert torch.allclose(all_views.exp(), (plain.mean(0) + turned.mean(0)) / 2.0, atol=1e-6)
+    unmirrored = ManyViews(one, WORDS, ())(images, questions, owners)
+    assert torch.allclose(unmirrored.exp(), plain.mean(0), atol=1e-6)
+
+
+@pytest.mark.parametrize(("down", "right"), SHIFTS)
+def test_what_an_image_shows_is_moved(down: int, right: int) -> None:
+    image = torch.zeros(1, 1, 5, 6)
+    image[0, 0, 2, 3] = 1.0
+    assert moved(image, down, right).nonzero().tolist() == [[0, 0, 2 + down, 3 + right]]
 
 
 def test_a_training_goes_on_from_its_checkpoint_as_if_it_had_not_stopped(tmp_path: Path) -> None:

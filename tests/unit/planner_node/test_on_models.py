@@ -130,3 +130,15 @@ def test_codes_are_searched_by_how_many_bits_differ_from_the_goal() -> None:
 def test_states_that_share_a_code_are_refused() -> None:
     with pytest.raises(AmbiguousTransitionError, match="share a code"):
         ObservedModel([(b"a", Move(0, 1), b"b"), (b"a", Move(0, 1), b"c")])
+
+
+def test_a_code_of_no_state_is_taken_for_the_one_state_most_like_it() -> None:
+    codes = [b"\x00\x00", b"\x0f\x0f", b"\xf0\xf0"]
+    model = ObservedModel((codes[i], Move(0, 1), codes[(i + 1) % 3]) for i in range(3))
+    for code in codes:
+        assert model.nearest(code) == code
+        turned = bytes([code[0] ^ 0b00011000, code[1]])
+        assert model.nearest(turned) == code
+    between = b"\x0f\x00"
+    assert model.nearest(between) == between
+    assert ObservedModel[bytes](()).nearest(b"\x01") == b"\x01"

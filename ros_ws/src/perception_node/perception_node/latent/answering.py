@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from itertools import product
 from typing import Final
 
 import torch
@@ -21,6 +22,8 @@ _ASKED: Final = 128
 _EDGE: Final = 16
 #: Edge of the map whose places are the relation network's objects.
 _OBJECTS: Final = 6
+#: By how many pixels, down and to the right, an image is moved before it is read.
+SHIFTS: Final = tuple(product((-1, 0, 1), repeat=2))
 
 
 class _Sight(nn.Module):
@@ -141,8 +144,11 @@ class FilmNetwork(Answerer):
         return found
 
 
-class BothWays(nn.Module):
-    """Reads an image as it is and in a mirror, and holds both answers equally likely.
+class ManyViews(nn.Module):
+    """Reads an image in several views, and holds what it reads in each of them equally likely.
+
+    Views are the image and its mirror image, each where it is and a pixel farther in the eight
+    directions: what lies on the border of two places for one view does not for another one.
 
     Args:
         answerer: the interface of :class:`Answerer`; it was trained on mirrored images, too.
@@ -162,14 +168,25 @@ class BothWays(nn.Module):
 
     def forward(self, images: Tensor, questions: Tensor, owners: Tensor) -> Tensor:
         """Log-probabilities of the answers, shape (m, |Y|); see :meth:`Answerer.forward`."""
-        read = [self.one_way(images, questions, owners, mirror) for mirror in self.ways]
+        read = [
+            self.one_way(moved(images, down, right), questions, owners, mirror)
+            for down, right in SHIFTS
+            for mirror in self.ways
+        ]
         return torch.logsumexp(torch.stack(read), 0) - math.log(len(read))
 
     def one_way(self, images: Tensor, questions: Tensor, owners: Tensor, mirror: bool) -> Tensor:
-        """The same, read in one way only."""
+        """The same, read where it is, in one way only."""
         if mirror:
             images, questions = images.flip(3), self.in_mirror[questions]
         return self.answerer(images, questions, owners).log_softmax(1)
+
+
+def moved(images: Tensor, down: int, right: int) -> Tensor:
+    """Images (n, c, h, w) moved by at most a pixel each way; what enters repeats the border."""
+    height, width = images.shape[2:]
+    wide = nn.functional.pad(images, (1, 1, 1, 1), mode="replicate")
+    return wide[:, :, 1 - down : 1 - down + height, 1 - right : 1 - right + width]
 
 
 def words_in_mirror(words: Sequence[str], mirrored: Sequence[tuple[str, str]]) -> Tensor:

@@ -21,7 +21,7 @@ from torch.nn import functional
 
 from perception_node.training.run import Stateful, TrainingRun
 
-from .answering import ANSWERERS, BothWays, words_in_mirror
+from .answering import ANSWERERS, ManyViews, words_in_mirror
 from .networks import half_precision
 from .state_encoder import EncoderConfig, StateEncoder, values_of
 
@@ -105,7 +105,7 @@ class ReaderTrainer(TrainingRun[dict[str, float]]):
         torch.manual_seed(config.seed)
         self.batches = _Batches(asked, config, config.words, config.mirrored)
         self.answerer = ANSWERERS[config.answerer](config.words, config.answers)
-        self.reader = BothWays(self.answerer, config.words, config.mirrored)
+        self.reader = ManyViews(self.answerer, config.words, config.mirrored)
         self.optimizer, self.schedule = _optimizer(self.answerer, config, self.steps)
 
     @property
@@ -150,7 +150,7 @@ class QaTrainer(TrainingRun[dict[str, float]]):
         self,
         asked: Asked,
         config: QaConfig,
-        reader: BothWays,
+        reader: ManyViews,
         start: StateEncoder | None = None,
     ) -> None:
         super().__init__(config, _steps(asked, config))

@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterable, Sequence
 from typing import Generic, TypeVar
 
+import numpy as np
+
 from scene_graph import Move
 
 State = TypeVar("State", bound=Hashable)
@@ -39,3 +41,19 @@ class ObservedModel(Generic[State]):
     def successors(self, states: Sequence[State]) -> list[list[tuple[Move, State]]]:
         """See :class:`.interface.ActionModel`; a state never seen has none."""
         return [self._table.get(state, []) for state in states]
+
+    def nearest(self: ObservedModel[bytes], code: bytes) -> bytes:
+        """The observed state that a packed code stands for: itself, else the one most like it.
+
+        One part of a picture that was read wrong makes a code of no state, but two states differ
+        in two parts at least: where a block was, and where it is. A code that was not snapped
+        tells best which one is meant. Where two states are equally near, or none was observed,
+        the code is returned as it is.
+        """
+        if code in self._table or not self._table:
+            return code
+        states = list(self._table)
+        known = np.frombuffer(b"".join(states), np.uint8).reshape(len(states), -1)
+        differ = np.bitwise_count(known ^ np.frombuffer(code, np.uint8)).sum(axis=1)
+        best = np.flatnonzero(differ == differ.min())
+        return states[best[0]] if len(best) == 1 else code
