@@ -1,0 +1,324 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Moves that every plan for many blocks has: those that parts of the blocks need by themselves.
+
+The blocks are split into groups whose distances are in tables of all their arrangements, see
+:mod:`~planner_node.search.patterns`, so that the tables' values add up to as much as possible. Some
+groups are then a part, and whether it needs one move more than that, and one more, is searched for
+from both ends. Parts share no block, so that their moves add up. In C (``part_bounds.c``).
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache, lru_cache
+from itertools import pairwise
+from math import comb, factorial
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+from tamp_runtime.machine_code import written
+
+from scene_graph import Stacks
+
+from ..errors import SearchLimitError
+from .limits import Limits, PartTooLargeError
+from .patterns import Distances, pattern_count
+
+#: What ``part_bounds.c`` has room for, and the blocks' spots are counted by.
+MOST_PLACES: Final = 16
+MOST_BLOCKS: Final = 64
+MOST_IN_GROUP: Final = 8
+#: Arrangements of one group, a byte each in some tables that are kept.
+PATTERNS: Final = 2_000_000
+#: Groups of a part; one more where the last would be alone.
+IN_PART: Final = 2
+#: Random orders that splits are made from, and exchanges of two blocks that are tried in each.
+RESTARTS: Final = 20
+EXCHANGES: Final = 1_000
+#: Expansions between two looks at the limits: some milliseconds.
+CHUNK: Final = 4_096
+
+_FILE: Final = Path(__file__).with_suffix(".c")
+_TOO_MANY: Final = (PartTooLargeError, SearchLimitError)
+_GO_ON: Final = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int)
+
+
+class _Patterns(ctypes.Structure):
+    _fields_ = [
+        *((name, ctypes.c_int) for name in ("places", "size", "compositions", "permutations")),
+        *(
+            (name, ctypes.c_void_p)
+            for name in ("turned", "after", "turn", "heights", "before", "tables")
+        ),
+    ]
+
+
+class _Group(ctypes.Structure):
+    _fields_ = [
+        ("patterns", ctypes.POINTER(_Patterns)),
+        ("place", ctypes.c_uint8 * MOST_PLACES),
+        *((name, ctypes.c_uint32) for name in ("start", "goal")),
+        ("distances", ctypes.c_void_p * 2),
+        *((name, ctypes.c_int) for name in ("shift", "bits")),
+    ]
+
+
+class _Part(ctypes.Structure):
+    _fields_ = [
+        *((name, ctypes.c_int) for name in ("places", "groups", "blocks", "width")),
+        ("group", ctypes.POINTER(_Group)),
+    ]
+
+
+class PartBounds:
+    """The bound of one problem, which can be raised."""
+
+    def __init__(self, initial: Stacks, target: Stacks, limits: Limits) -> None:
+        names = [name for stack in initial for name in stack]
+        self._places, self._blocks = len(initial), len(names)
+        self._start, self._goal = (spots_by_name(stacks, names) for stacks in (initial, target))
+        self._parts = self._split(limits)
+        self._bounds = [sum(group.moves for group in part) for part in self._parts]
+
+    @staticmethod
+    def possible(places: int, blocks: int) -> bool:
+        """Whether there is the C for it, and room for so many."""
+        fits = 3 <= places <= MOST_PLACES and blocks <= MOST_BLOCKS
+        return fits and written(_FILE) is not None
+
+    @property
+    def least(self) -> int:
+        """No plan has fewer moves."""
+        return sum(self._bounds)
+
+    def raise_to(self, enough: int, max_expansions: int, limits: Limits) -> None:
+        """Makes it larger by a search.
+
+        Args:
+            enough: what is as good as more.
+            max_expansions: of all parts.
+
+        Raises:
+            SearchCancelledError: see :class:`Limits`. Its other limits end it without an error.
+        """
+        left = max_expansions
+        for index, part in enumerate(self._parts):
+            within = limits.of_a_part(left // (len(self._parts) - index))
+            others = self.least - self._bounds[index]
+            self._bounds[index] = self._searched(part, enough - others, within)
+            left -= within.expanded
+
+    def _split(self, limits: Limits) -> list[list[_Member]]:
+        sizes = _sizes(self._places, self._blocks)
+        spaces = [_space(self._places, size) for size in sizes]
+        for space in spaces:
+            space.make_tables(limits.poll)
+        order = np.arange(self._blocks, dtype=np.uint8)
+        pointers = (ctypes.c_void_p * len(spaces))(*(ctypes.addressof(s.struct) for s in spaces))
+        _library().best_split(
+            len(spaces), pointers, self._blocks, _at(order), _at(self._start), _at(self._goal),
+            RESTARTS, EXCHANGES,
+        )  # fmt: skip
+        cuts = np.split(order, np.cumsum(sizes)[:-1])
+        members = [
+            _Member(space, blocks, self._start, self._goal) for space, blocks in zip(spaces, cuts)
+        ]
+        count = max(1, len(members) // IN_PART)
+        # The smaller groups are first, and the larger parts.
+        bounds = [len(members) * part // count for part in range(count, -1, -1)]
+        return [members[low:high] for high, low in pairwise(bounds)]
+
+    def _searched(self, members: Sequence[_Member], enough: int, within: Limits) -> int:
+        width = max(1, (len(members) - 1).bit_length())
+        colour = {
+            int(block): number for number, member in enumerate(members) for block in member.blocks
+        }
+        groups = (_Group * len(members))()
+        shift, tables = len(colour) * width, []
+        for group, member in zip(groups, members):
+            within.poll()
+            tables.append(member.space.distances(member.group.start))
+            ctypes.memmove(ctypes.byref(group), ctypes.byref(member.group), ctypes.sizeof(group))
+            group.distances[1] = tables[-1].ctypes.data
+            group.shift, group.bits = shift, member.space.bits
+            shift += group.bits
+        part = _Part(self._places, len(members), len(colour), width, groups)
+        colours = [
+            sum(
+                colour[block] << place * width
+                for place, block in enumerate(sorted(colour, key=lambda block: int(spots[block])))
+            )
+            for spots in (self._start, self._goal)
+        ]
+        proven = ctypes.c_int()
+        with Going(within) as going:
+            if not _library().part_bound(
+                ctypes.byref(part), *map(ctypes.c_uint64, colours), enough, CHUNK,
+                going.on, ctypes.byref(proven),
+            ):  # fmt: skip
+                raise MemoryError("no memory to search for the bound of a part")
+        return proven.value
+
+
+class Going:
+    """``on`` for C to call now and then, by which limits end it.
+
+    Leaving the context raises what the limits raised, but not that there were too many expansions.
+    """
+
+    def __init__(self, limits: Limits, count: bool = True) -> None:
+        self._limits, self._count = limits, count
+        self._error: Exception | None = None
+        self.on = _GO_ON(self._go_on)
+
+    def __enter__(self) -> Going:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._error is not None and not isinstance(self._error, _TOO_MANY):
+            raise self._error
+
+    def _go_on(self, number: int) -> int:
+        # An exception cannot pass through C.
+        try:
+            if self._count:
+                while number > 0:
+                    number -= self._limits.count_expansions(number)
+            else:
+                self._limits.poll()
+        except Exception as error:
+            self._error = error
+            return 0
+        return 1
+
+
+def spots_by_name(stacks: Stacks, names: Sequence[str]) -> NDArray[np.uint16]:
+    """Where every block stands: its place times MOST_BLOCKS, plus its level."""
+    spot = {
+        name: place * MOST_BLOCKS + level
+        for place, stack in enumerate(stacks)
+        for level, name in enumerate(stack)
+    }
+    return np.array([spot[name] for name in names], np.uint16)
+
+
+class _Member:
+    """A group of a part.
+
+    Attributes:
+        moves: that it needs by itself.
+    """
+
+    def __init__(
+        self,
+        space: _Space,
+        blocks: NDArray[np.uint8],
+        start: NDArray[np.uint16],
+        goal: NDArray[np.uint16],
+    ) -> None:
+        self.space, self.blocks, self.group = space, blocks, _Group()
+        self.moves: int = _library().set_group(
+            ctypes.byref(space.struct), _at(blocks), _at(start), _at(goal), ctypes.byref(self.group)
+        )
+
+
+class _Space:
+    """All arrangements of a group, and the distances to goals of every shape."""
+
+    def __init__(self, places: int, size: int) -> None:
+        compositions = np.array(list(_compositions(places, size)), np.uint8)
+        numbers = {tuple(heights): number for number, heights in enumerate(compositions.tolist())}
+        count, permutations = len(compositions), factorial(size)
+        self._after = np.full((count, places, places), 0xFFFF, np.uint16)
+        self._turn = np.zeros((count, places, places), np.uint8)
+        for heights, number in numbers.items():
+            ends = np.cumsum([0, *heights])
+            for source in range(places):
+                for target in range(places):
+                    if target != source and heights[source]:
+                        moved = list(heights)
+                        moved[source] -= 1
+                        moved[target] += 1
+                        self._after[number, source, target] = numbers[tuple(moved)]
+                        to = ends[target + 1] - (target > source)
+                        self._turn[number, source, target] = (ends[source + 1] - 1) * size + to
+        self._heights, self._before = compositions, _before(places, size)
+        self._turned = np.empty((size * size, permutations), np.uint16)
+        _library().fill_turned(size, permutations, _at(self._turned))
+        self._pointers = np.zeros(count, np.uintp)
+        self._tables: dict[int, Distances] = {}
+        self.bits = (count * permutations - 1).bit_length()
+        self.struct = _Patterns(
+            places, size, count, permutations,
+            *(array.ctypes.data for array in (self._turned, self._after, self._turn)),
+            *(array.ctypes.data for array in (self._heights, self._before, self._pointers)),
+        )  # fmt: skip
+
+    def make_tables(self, poll: Callable[[], None]) -> None:
+        """Of all goals with descending heights, as far as they are not there."""
+        descending = (np.diff(self._heights.astype(np.int8), axis=1) <= 0).all(axis=1)
+        for shape in np.flatnonzero(descending).tolist():
+            if shape not in self._tables:
+                poll()
+                self._tables[shape] = self.distances(shape * self.struct.permutations)
+                self._pointers[shape] = self._tables[shape].ctypes.data
+
+    def distances(self, pattern: int) -> Distances:
+        """From one arrangement to all."""
+        result = np.empty(self.struct.compositions * self.struct.permutations, np.uint8)
+        some = np.empty(self.struct.permutations + 1, np.uint16)
+        _library().fill_distances(
+            ctypes.byref(self.struct), ctypes.c_uint32(pattern), _at(result), _at(some)
+        )
+        return result
+
+
+@lru_cache(maxsize=16)
+def _space(places: int, size: int) -> _Space:
+    return _Space(places, size)
+
+
+def _sizes(places: int, blocks: int) -> list[int]:
+    """Of groups as large as their tables may be, but for the first one."""
+    size = 1
+    while size < MOST_IN_GROUP and pattern_count(places, size + 1, 0) <= PATTERNS:
+        size += 1
+    full, rest = divmod(blocks, size)
+    return [rest] * (rest > 0) + [size] * full
+
+
+def _compositions(places: int, blocks: int) -> Iterator[tuple[int, ...]]:
+    """How many blocks stand on each place, in ascending order."""
+    if places == 1:
+        yield (blocks,)
+        return
+    for first in range(blocks + 1):
+        for others in _compositions(places - 1, blocks - first):
+            yield (first, *others)
+
+
+def _before(places: int, size: int) -> NDArray[np.int32]:
+    """Compositions that come before one, for each place by the blocks left and its height."""
+    result = np.zeros((places, size + 1, size + 1), np.int32)
+    for place in range(places - 1):
+        behind = places - 1 - place
+        for left in range(size + 1):
+            for height in range(left):
+                number = comb(left - height + behind - 1, behind - 1)
+                result[place, left, height + 1] = result[place, left, height] + number
+    return result
+
+
+@cache
+def _library() -> Any:
+    library = written(_FILE)
+    if library is None:
+        raise RuntimeError("no C compiler; see PartBounds.possible")
+    return library
+
+
+def _at(array: NDArray[Any]) -> ctypes.c_void_p:
+    return ctypes.c_void_p(array.ctypes.data)
