@@ -12,7 +12,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache, lru_cache
-from itertools import pairwise
+from itertools import pairwise, permutations
 from math import comb, factorial
 from pathlib import Path
 from typing import Any, Final
@@ -31,8 +31,9 @@ from .patterns import Distances, pattern_count
 MOST_PLACES: Final = 16
 MOST_BLOCKS: Final = 64
 MOST_IN_GROUP: Final = 8
-#: Arrangements of one group, a byte each in some tables that are kept.
-PATTERNS: Final = 2_000_000
+#: Arrangements of one group times the moves from each, which a table looks at. Some tables are
+#: kept, a byte for an arrangement.
+TABLE: Final = 40_000_000
 #: Groups of a part; one more where the last would be alone.
 IN_PART: Final = 2
 #: Random orders that splits are made from, and exchanges of two blocks that are tried in each.
@@ -122,14 +123,14 @@ class PartBounds:
             len(spaces), pointers, self._blocks, _at(order), _at(self._start), _at(self._goal),
             RESTARTS, EXCHANGES,
         )  # fmt: skip
-        cuts = np.split(order, np.cumsum(sizes)[:-1])
         members = [
-            _Member(space, blocks, self._start, self._goal) for space, blocks in zip(spaces, cuts)
+            _Member(space, blocks, self._start, self._goal)
+            for space, blocks in zip(spaces, np.split(order, np.cumsum(sizes)[:-1]))
         ]
         count = max(1, len(members) // IN_PART)
-        # The smaller groups are first, and the larger parts.
-        bounds = [len(members) * part // count for part in range(count, -1, -1)]
-        return [members[low:high] for high, low in pairwise(bounds)]
+        # The smallest group is first; it is in a larger part.
+        cuts = [-(-len(members) * part // count) for part in range(count + 1)]
+        return [members[low:high] for low, high in pairwise(cuts)]
 
     def _searched(self, members: Sequence[_Member], enough: int, within: Limits) -> int:
         width = max(1, (len(members) - 1).bit_length())
@@ -229,33 +230,39 @@ class _Space:
     """All arrangements of a group, and the distances to goals of every shape."""
 
     def __init__(self, places: int, size: int) -> None:
-        compositions = np.array(list(_compositions(places, size)), np.uint8)
-        numbers = {tuple(heights): number for number, heights in enumerate(compositions.tolist())}
-        count, permutations = len(compositions), factorial(size)
+        heights = np.array(list(_compositions(places, size)), np.uint8)
+        self._heights, self._before = heights, _before(places, size)
+        count, orders = len(heights), factorial(size)
         self._after = np.full((count, places, places), 0xFFFF, np.uint16)
         self._turn = np.zeros((count, places, places), np.uint8)
-        for heights, number in numbers.items():
-            ends = np.cumsum([0, *heights])
-            for source in range(places):
-                for target in range(places):
-                    if target != source and heights[source]:
-                        moved = list(heights)
-                        moved[source] -= 1
-                        moved[target] += 1
-                        self._after[number, source, target] = numbers[tuple(moved)]
-                        to = ends[target + 1] - (target > source)
-                        self._turn[number, source, target] = (ends[source + 1] - 1) * size + to
-        self._heights, self._before = compositions, _before(places, size)
-        self._turned = np.empty((size * size, permutations), np.uint16)
-        _library().fill_turned(size, permutations, _at(self._turned))
+        ends = np.cumsum(heights, axis=1)
+        for source, target in permutations(range(places), 2):
+            rows = np.flatnonzero(heights[:, source])
+            moved = heights[rows]
+            moved[:, source] -= 1
+            moved[:, target] += 1
+            self._after[rows, source, target] = self._numbers(moved)
+            to = ends[rows, target] - 1 if target > source else ends[rows, target]
+            self._turn[rows, source, target] = (ends[rows, source] - 1) * size + to
+        self._turned = np.empty((size * size, orders), np.uint16)
+        _library().fill_turned(size, orders, _at(self._turned))
         self._pointers = np.zeros(count, np.uintp)
         self._tables: dict[int, Distances] = {}
-        self.bits = (count * permutations - 1).bit_length()
+        self.bits = (count * orders - 1).bit_length()
         self.struct = _Patterns(
-            places, size, count, permutations,
+            places, size, count, orders,
             *(array.ctypes.data for array in (self._turned, self._after, self._turn)),
             *(array.ctypes.data for array in (self._heights, self._before, self._pointers)),
         )  # fmt: skip
+
+    def _numbers(self, heights: NDArray[np.uint8]) -> NDArray[np.int64]:
+        """Of compositions, shape (compositions, places)."""
+        left = np.full(len(heights), heights[0].sum())
+        numbers = np.zeros(len(heights), np.int64)
+        for place, height in enumerate(heights.T):
+            numbers += self._before[place, left, height]
+            left -= height
+        return numbers
 
     def make_tables(self, poll: Callable[[], None]) -> None:
         """Of all goals with descending heights, as far as they are not there."""
@@ -283,8 +290,8 @@ def _space(places: int, size: int) -> _Space:
 
 def _sizes(places: int, blocks: int) -> list[int]:
     """Of groups as large as their tables may be, but for the first one."""
-    size = 1
-    while size < MOST_IN_GROUP and pattern_count(places, size + 1, 0) <= PATTERNS:
+    size, largest = 1, TABLE // (places * (places - 1))
+    while size < MOST_IN_GROUP and pattern_count(places, size + 1, 0) <= largest:
         size += 1
     full, rest = divmod(blocks, size)
     return [rest] * (rest > 0) + [size] * full
