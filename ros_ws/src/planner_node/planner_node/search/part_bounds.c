@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Moves that parts of the blocks need at least, see part_bounds.py.
+// Moves that parts of the blocks need at least, see part_bounds.py and group_tables.py.
 //
 // A pattern of a group of k blocks is its composition (how many stand on each place) times k!, plus
 // the rank of its permutation (the blocks' labels from the first place to the last). Labels ascend

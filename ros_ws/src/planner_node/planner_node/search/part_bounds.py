@@ -10,12 +10,9 @@ from both ends. Parts share no block, so that their moves add up. In C (``part_b
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Iterator, Sequence
-from functools import cache, lru_cache
-from itertools import pairwise, permutations
-from math import comb, factorial
-from pathlib import Path
-from typing import Any, Final
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,13 +21,21 @@ from tamp_runtime.machine_code import written
 from scene_graph import Stacks
 
 from ..errors import SearchLimitError
+from .group_tables import (
+    FILE,
+    MOST_IN_GROUP,
+    MOST_PLACES,
+    GroupTables,
+    Patterns,
+    at,
+    group_tables,
+    library,
+)
 from .limits import Limits, PartTooLargeError
-from .patterns import Distances, pattern_count
+from .patterns import pattern_count
 
 #: What ``part_bounds.c`` has room for, and the blocks' spots are counted by.
-MOST_PLACES: Final = 16
 MOST_BLOCKS: Final = 64
-MOST_IN_GROUP: Final = 8
 #: Arrangements of one group times the moves from each, which a table looks at. Some tables are
 #: kept, a byte for an arrangement.
 TABLE: Final = 40_000_000
@@ -42,24 +47,13 @@ EXCHANGES: Final = 1_000
 #: Expansions between two looks at the limits: some milliseconds.
 CHUNK: Final = 4_096
 
-_FILE: Final = Path(__file__).with_suffix(".c")
 _TOO_MANY: Final = (PartTooLargeError, SearchLimitError)
 _GO_ON: Final = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int)
 
 
-class _Patterns(ctypes.Structure):
-    _fields_ = [
-        *((name, ctypes.c_int) for name in ("places", "size", "compositions", "permutations")),
-        *(
-            (name, ctypes.c_void_p)
-            for name in ("turned", "after", "turn", "heights", "before", "tables")
-        ),
-    ]
-
-
 class _Group(ctypes.Structure):
     _fields_ = [
-        ("patterns", ctypes.POINTER(_Patterns)),
+        ("patterns", ctypes.POINTER(Patterns)),
         ("place", ctypes.c_uint8 * MOST_PLACES),
         *((name, ctypes.c_uint32) for name in ("start", "goal")),
         ("distances", ctypes.c_void_p * 2),
@@ -88,7 +82,7 @@ class PartBounds:
     def possible(places: int, blocks: int) -> bool:
         """Whether there is the C for it, and room for so many."""
         fits = 3 <= places <= MOST_PLACES and blocks <= MOST_BLOCKS
-        return fits and written(_FILE) is not None
+        return fits and written(FILE) is not None
 
     @property
     def least(self) -> int:
@@ -114,13 +108,13 @@ class PartBounds:
 
     def _split(self, limits: Limits) -> list[list[_Member]]:
         sizes = _sizes(self._places, self._blocks)
-        spaces = [_space(self._places, size) for size in sizes]
+        spaces = [group_tables(self._places, size) for size in sizes]
         for space in spaces:
             space.make_tables(limits.poll)
         order = np.arange(self._blocks, dtype=np.uint8)
         pointers = (ctypes.c_void_p * len(spaces))(*(ctypes.addressof(s.struct) for s in spaces))
-        _library().best_split(
-            len(spaces), pointers, self._blocks, _at(order), _at(self._start), _at(self._goal),
+        library().best_split(
+            len(spaces), pointers, self._blocks, at(order), at(self._start), at(self._goal),
             RESTARTS, EXCHANGES,
         )  # fmt: skip
         members = [
@@ -156,7 +150,7 @@ class PartBounds:
         ]
         proven = ctypes.c_int()
         with Going(within) as going:
-            if not _library().part_bound(
+            if not library().part_bound(
                 ctypes.byref(part), *map(ctypes.c_uint64, colours), enough, CHUNK,
                 going.on, ctypes.byref(proven),
             ):  # fmt: skip
@@ -215,77 +209,15 @@ class _Member:
 
     def __init__(
         self,
-        space: _Space,
+        space: GroupTables,
         blocks: NDArray[np.uint8],
         start: NDArray[np.uint16],
         goal: NDArray[np.uint16],
     ) -> None:
         self.space, self.blocks, self.group = space, blocks, _Group()
-        self.moves: int = _library().set_group(
-            ctypes.byref(space.struct), _at(blocks), _at(start), _at(goal), ctypes.byref(self.group)
+        self.moves: int = library().set_group(
+            ctypes.byref(space.struct), at(blocks), at(start), at(goal), ctypes.byref(self.group)
         )
-
-
-class _Space:
-    """All arrangements of a group, and the distances to goals of every shape."""
-
-    def __init__(self, places: int, size: int) -> None:
-        heights = np.array(list(_compositions(places, size)), np.uint8)
-        self._heights, self._before = heights, _before(places, size)
-        count, orders = len(heights), factorial(size)
-        self._after = np.full((count, places, places), 0xFFFF, np.uint16)
-        self._turn = np.zeros((count, places, places), np.uint8)
-        ends = np.cumsum(heights, axis=1)
-        for source, target in permutations(range(places), 2):
-            rows = np.flatnonzero(heights[:, source])
-            moved = heights[rows]
-            moved[:, source] -= 1
-            moved[:, target] += 1
-            self._after[rows, source, target] = self._numbers(moved)
-            to = ends[rows, target] - 1 if target > source else ends[rows, target]
-            self._turn[rows, source, target] = (ends[rows, source] - 1) * size + to
-        self._turned = np.empty((size * size, orders), np.uint16)
-        _library().fill_turned(size, orders, _at(self._turned))
-        self._pointers = np.zeros(count, np.uintp)
-        self._tables: dict[int, Distances] = {}
-        self.bits = (count * orders - 1).bit_length()
-        self.struct = _Patterns(
-            places, size, count, orders,
-            *(array.ctypes.data for array in (self._turned, self._after, self._turn)),
-            *(array.ctypes.data for array in (self._heights, self._before, self._pointers)),
-        )  # fmt: skip
-
-    def _numbers(self, heights: NDArray[np.uint8]) -> NDArray[np.int64]:
-        """Of compositions, shape (compositions, places)."""
-        left = np.full(len(heights), heights[0].sum())
-        numbers = np.zeros(len(heights), np.int64)
-        for place, height in enumerate(heights.T):
-            numbers += self._before[place, left, height]
-            left -= height
-        return numbers
-
-    def make_tables(self, poll: Callable[[], None]) -> None:
-        """Of all goals with descending heights, as far as they are not there."""
-        descending = (np.diff(self._heights.astype(np.int8), axis=1) <= 0).all(axis=1)
-        for shape in np.flatnonzero(descending).tolist():
-            if shape not in self._tables:
-                poll()
-                self._tables[shape] = self.distances(shape * self.struct.permutations)
-                self._pointers[shape] = self._tables[shape].ctypes.data
-
-    def distances(self, pattern: int) -> Distances:
-        """From one arrangement to all."""
-        result = np.empty(self.struct.compositions * self.struct.permutations, np.uint8)
-        some = np.empty(self.struct.permutations + 1, np.uint16)
-        _library().fill_distances(
-            ctypes.byref(self.struct), ctypes.c_uint32(pattern), _at(result), _at(some)
-        )
-        return result
-
-
-@lru_cache(maxsize=16)
-def _space(places: int, size: int) -> _Space:
-    return _Space(places, size)
 
 
 def _sizes(places: int, blocks: int) -> list[int]:
@@ -295,37 +227,3 @@ def _sizes(places: int, blocks: int) -> list[int]:
         size += 1
     full, rest = divmod(blocks, size)
     return [rest] * (rest > 0) + [size] * full
-
-
-def _compositions(places: int, blocks: int) -> Iterator[tuple[int, ...]]:
-    """How many blocks stand on each place, in ascending order."""
-    if places == 1:
-        yield (blocks,)
-        return
-    for first in range(blocks + 1):
-        for others in _compositions(places - 1, blocks - first):
-            yield (first, *others)
-
-
-def _before(places: int, size: int) -> NDArray[np.int32]:
-    """Compositions that come before one, for each place by the blocks left and its height."""
-    result = np.zeros((places, size + 1, size + 1), np.int32)
-    for place in range(places - 1):
-        behind = places - 1 - place
-        for left in range(size + 1):
-            for height in range(left):
-                number = comb(left - height + behind - 1, behind - 1)
-                result[place, left, height + 1] = result[place, left, height] + number
-    return result
-
-
-@cache
-def _library() -> Any:
-    library = written(_FILE)
-    if library is None:
-        raise RuntimeError("no C compiler; see PartBounds.possible")
-    return library
-
-
-def _at(array: NDArray[Any]) -> ctypes.c_void_p:
-    return ctypes.c_void_p(array.ctypes.data)

@@ -19,8 +19,9 @@ from tamp_runtime.machine_code import written
 
 from scene_graph import Move, Stacks
 
+from .group_tables import MOST_PLACES
 from .limits import Limits
-from .part_bounds import MOST_BLOCKS, MOST_PLACES, Going, spots_by_name
+from .part_bounds import MOST_BLOCKS, Going, spots_by_name
 
 #: Blocks that are taken out together at most, and how far from each other they stand at the end
 #: where they are chosen from one stack.
