@@ -15,7 +15,10 @@ ROS_PARTS = (
     "trajectory_topics",
 )
 #: Packages that are ROS throughout, but for the modules named.
-ROS_PACKAGES = {"tamp_runtime": ("motion_report",), "tamp_bringup": ("task", "plan_picture")}
+ROS_PACKAGES = {
+    "tamp_runtime": ("machine_code", "motion_report"),
+    "tamp_bringup": ("task", "plan_picture"),
+}
 
 #: Makes rclpy, the interface generators' run time and every message package unimportable.
 NO_ROS = """

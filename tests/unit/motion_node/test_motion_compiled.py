@@ -11,17 +11,10 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 import pytest
+from tamp_runtime import machine_code as module
+from tamp_runtime.machine_code import opened, written
 
-from motion_node.nlp import compiled as module
-from motion_node.nlp.compiled import (
-    MachineCode,
-    compilations,
-    finish,
-    loaded,
-    machine_code,
-    opened,
-    written,
-)
+from motion_node.nlp.compiled import MachineCode, compilations, finish, loaded, machine_code
 
 
 def some_function(factor: float = 2.0) -> ca.Function:
@@ -37,7 +30,7 @@ def compiled(function: ca.Function) -> ca.Function:
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    return tmp_path / "motion_node"
+    return tmp_path / "tamp_runtime"
 
 
 def assert_same(one: ca.Function, other: ca.Function) -> None:

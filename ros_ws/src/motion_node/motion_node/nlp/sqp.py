@@ -14,9 +14,9 @@ from typing import Final
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+from tamp_runtime.machine_code import opened, written
 
 from .buffered import Buffered
-from .compiled import opened, written
 from .program import TOLERANCE, Instance, Program
 from .solver import Found, Solver
 

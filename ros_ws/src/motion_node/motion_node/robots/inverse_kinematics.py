@@ -13,9 +13,10 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
+from tamp_runtime.machine_code import opened, written
 
 from ..nlp.buffered import Buffered
-from ..nlp.compiled import loaded, machine_code, opened, written
+from ..nlp.compiled import loaded, machine_code
 from .model import FREEDOMS_OF_A_POSE, HAND_ROWS, POSITION_ROWS, ArmModel
 
 Array = NDArray[np.float64]

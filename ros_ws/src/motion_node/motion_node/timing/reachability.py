@@ -17,8 +17,8 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
+from tamp_runtime.machine_code import written
 
-from ..nlp.compiled import written
 from .limits import JointLimits
 
 Array = NDArray[np.float64]

@@ -3,24 +3,41 @@
 
 What a block costs among the moves of all others is found exactly, by dynamic programming over
 these moves. A plan gets shorter as long as there are few blocks that are moved too often together.
+In C (``reinsertion.c``) where that can be compiled, and else in Python, with less effort.
 """
 
 from __future__ import annotations
 
+import ctypes
 import random
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Final, NamedTuple
+
+import numpy as np
+from tamp_runtime.machine_code import written
 
 from scene_graph import Move, Stacks
 
+from .group_tables import MOST_PLACES
 from .limits import Limits
+from .part_bounds import MOST_BLOCKS, Going, spots_by_name
 
 #: Blocks that are taken out together at most, and how far from each other they stand at the end
 #: where they are chosen from one stack.
 MOST_OUT: Final = 7
 NEAR: Final = 2
-#: How often a plan goes on that is one move longer.
-WORSE: Final = 0.02
+#: How often a plan goes on that is one move longer, in C and in Python.
+WORSE: Final = 0.06
+WORSE_IN_PYTHON: Final = 0.02
+#: How much less effort there is in Python.
+SLOWER: Final = 20
+#: Moves of plans that C has room for, and that it looks at between two looks at the limits: some
+#: milliseconds.
+MOST_STEPS: Final = 1024
+CHUNK: Final = 1_000_000
+
+_FILE: Final = Path(__file__).with_suffix(".c")
 
 
 class Step(NamedTuple):
@@ -47,6 +64,30 @@ def shortened(
         enough: a plan of so many moves is short enough.
         work: how many moves of plans are looked at before it is left as it is.
     """
+    names = [name for stack in initial for name in stack]
+    fits = len(names) <= MOST_BLOCKS and len(initial) <= MOST_PLACES and len(moves) <= MOST_STEPS
+    library = written(_FILE) if fits else None
+    if library is None:
+        return shortened_in_python(initial, target, moves, enough, work // SLOWER, limits)
+    number = {name: index for index, name in enumerate(names)}
+    steps = [(number[step.block], *step[1:]) for step in steps_of(initial, moves)]
+    plan = np.array(steps, np.uint8).reshape(-1, 3)
+    start, goal = (spots_by_name(stacks, names) for stacks in (initial, target))
+    room = ctypes.create_string_buffer(library.room())
+    with Going(limits, count=False) as going:
+        length = library.shorten(
+            room, len(names), len(initial),
+            *(ctypes.c_void_p(array.ctypes.data) for array in (start, goal, plan)),
+            len(plan), ctypes.c_double(enough),
+            ctypes.c_long(work), MOST_OUT, NEAR, round(1000 * WORSE), CHUNK, going.on,
+        )  # fmt: skip
+    return [Move(source, to) for _, source, to in plan[:length].tolist()]
+
+
+def shortened_in_python(
+    initial: Stacks, target: Stacks, moves: Sequence[Move], enough: float, work: int, limits: Limits
+) -> list[Move]:
+    """As :func:`shortened`."""
     rng = random.Random(0)
     reinsertion = Reinsertion(initial, target)
     current = best = steps_of(initial, moves)
@@ -55,7 +96,7 @@ def shortened(
         out = reinsertion.chosen(rng)
         work -= len(out) * len(current)
         changed = reinsertion.again(current, out)
-        slack = rng.random() < WORSE
+        slack = rng.random() < WORSE_IN_PYTHON
         if changed is not None and len(changed) <= len(current) + slack:
             current = changed
             if len(current) < len(best):
