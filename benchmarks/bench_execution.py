@@ -22,6 +22,7 @@ import pybullet_data
 from kept_results import kept
 from motion_scenes import random_moves
 from results_file import Row, print_rows, quick, write_result
+from tamp_runtime.motion_report import ArmPlace, MotionState
 from tqdm import tqdm
 from watched_world import Stop, carry_out, tilt
 
@@ -30,7 +31,6 @@ from scene_graph import Move, Stacks, apply_move
 from sim_node.ground_truth import true_scene_graph
 from sim_node.layouts import random_layout
 from sim_node.world import World
-from tamp_runtime.motion_report import ArmPlace, MotionState
 
 FIRST_SEED: Final = 1000
 #: A block that was moved makes towers of 1 to so many.

@@ -105,27 +105,32 @@ class WatchedArm(PhysicalArm):
             stop.rested = now - (STATES - 1) * 4 * self._world.timestep
 
     def _look(self) -> None:
-        world, doing = self._world, self.doing
-        index = len(self._moves) - 1 if doing is None else min(doing.move, len(self._moves) - 1)
-        target, beside = "", set[str]()
-        if doing is not None and doing.phase not in ("", HOME):
-            target, beside = doing.object_name, self._supports(index)
-        elif doing is not None and doing.moves_done:
-            # The hand that leaves the block put down last may still have its fingers at it.
-            done = doing.moves_done - 1
-            target, beside = self._target(done), self._supports(done)
+        world = self._world
+        taken = {self._target(index): self._supports(index) for index in self._at_hand()}
         for point in pybullet.getContactPoints(bodyA=world.robot, physicsClientId=world.client):
             other, link = self._names.get(point[2], "itself"), self._links.get(point[3], "base")
             if point[9] <= 0.0 or (other == TABLE and link in ("base", "panda_link0")):
                 continue
-            if other != target or link not in _FINGERS:
+            if other not in taken or link not in _FINGERS:
                 self.touched.add(f"{link} touches {other}")
-        if target:
-            body = world.body(target)
+        for name, beside in taken.items():
+            body = world.body(name)
             for point in pybullet.getContactPoints(bodyA=body, physicsClientId=world.client):
                 other = self._names.get(point[2])
                 if point[9] > 0.0 and other is not None and other not in beside:
-                    self.touched.add(f"{target} touches {other}")
+                    self.touched.add(f"{name} touches {other}")
+
+    def _at_hand(self) -> list[int]:
+        """The moves whose blocks the fingers may have between them."""
+        doing = self.doing
+        if doing is None or not doing.phase:
+            return []
+        if doing.phase != HOME:
+            return [doing.move]
+        # The hand has just let go of one; after a stop it may also hold the next one.
+        stopped = self._stop is not None and self._stop.event.is_set()
+        found = [doing.moves_done - 1, doing.moves_done] if stopped else [doing.moves_done - 1]
+        return [index for index in found if 0 <= index < len(self._moves)]
 
     def _before(self, index: int) -> Stacks:
         stacks = self._stacks
