@@ -174,12 +174,10 @@ def main() -> None:
     start, bench, resume = time.perf_counter(), Bench(), arguments.resume
     seeds = range(arguments.seed, arguments.seed + arguments.n)
     moved = [
-        kept(FOLDER, f"move_{seed}", resume, lambda: bench.move(seed))
-        for seed in tqdm(seeds, desc="moves")
+        kept(f"{FOLDER}/moves", seed, resume, bench.move) for seed in tqdm(seeds, desc="moves")
     ]
     stopped = [
-        kept(FOLDER, f"stop_{seed}", resume, lambda: bench.stopped(seed))
-        for seed in tqdm(seeds, desc="stops")
+        kept(f"{FOLDER}/stops", seed, resume, bench.stopped) for seed in tqdm(seeds, desc="stops")
     ]
     rows = move_rows(moved) + stop_rows(stopped)
     print_rows(rows)

@@ -150,8 +150,8 @@ def duration_rows(planner: MotionPlanner, peers: Peers | None, count: int) -> li
         Row(name, "trajectories that do not begin and end at rest",
             sum("rest" in b for b in broken), "", done,
             required="== 0"),
-        Row(name, "trajectories beyond the Panda's limit of jerk", sum("jerk" in b for b in broken), "",
-            done, required="== 0",
+        Row(name, "trajectories beyond the Panda's limit of jerk",
+            sum("jerk" in b for b in broken), "", done, required="== 0",
             note=f"acceleration's changes within a millisecond; at most {max(jerky):.2f} of it"),
     ]  # fmt: skip
     if ratios:

@@ -166,7 +166,7 @@ def main() -> None:
     start, bench = time.perf_counter(), Bench()
     seeds = range(arguments.seed, arguments.seed + arguments.n)
     results = [
-        Result(**kept(FOLDER, str(seed), arguments.resume, lambda: asdict(bench.one(seed))))
+        Result(**kept(FOLDER, seed, arguments.resume, lambda own: asdict(bench.one(own))))
         for seed in tqdm(seeds)
     ]
     rows = rows_of(results)

@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import statistics
 import time
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -27,6 +28,7 @@ from tqdm import tqdm
 from motion_node.blocks import read_scene
 from motion_node.constraints import AtSwitch, Clearances, default_constraints
 from motion_node.dense_check import check
+from motion_node.nlp.rows import Rows
 from motion_node.planner import MotionPlanner
 
 Array = NDArray[np.float64]
@@ -36,7 +38,7 @@ FOLDER: Final = "trajectories"
 #: Height above a switch within which a held block may touch what it stands on [m].
 VERTICAL: Final = 0.05
 #: So many plans of three moves are solved from other starting points, too.
-OTHERS: Final = 20
+OTHERS: Final = 10
 STARTS: Final = 20
 #: For derivatives: configurations, and the step of central differences [rad].
 POINTS: Final = 20
@@ -132,17 +134,13 @@ def derivative_rows(planner: MotionPlanner) -> list[Row]:
             weights = rng.normal(size=rows.count)
             weights /= np.linalg.norm(weights)
 
-            def value(x: Array) -> Array:
-                return np.array(rows.value(x, parameters)).ravel()
-
-            def slope(x: Array) -> Array:
-                return np.asarray(weights @ np.array(rows.jacobian(x, parameters)))
-
             exact = (
                 np.array(rows.jacobian(q, parameters)),
                 np.array(rows.curvature(q, parameters, weights)),
             )
-            for index, function in enumerate((value, slope)):
+            for index, function in enumerate(
+                (partial(value, rows, parameters), partial(slope, rows, parameters, weights))
+            ):
                 columns = [
                     (function(q + aside) - function(q - aside)) / (2 * STEP)
                     for aside in STEP * np.eye(n)
@@ -159,6 +157,16 @@ def derivative_rows(planner: MotionPlanner) -> list[Row]:
     ]  # fmt: skip
 
 
+def value(rows: Rows, parameters: Array, q: Array) -> Array:
+    """Of all rows at a configuration (n,)."""
+    return np.array(rows.value(q, parameters)).ravel()
+
+
+def slope(rows: Rows, parameters: Array, weights: Array, q: Array) -> Array:
+    """Gradient (n,) of a combination of rows at a configuration (n,)."""
+    return np.asarray(weights @ np.array(rows.jacobian(q, parameters)))
+
+
 def main() -> None:
     """Measures, prints and writes."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -170,7 +178,7 @@ def main() -> None:
     planner = prepared_planner([moves for moves, *_ in LENGTHS])
     seeds = range(arguments.seed, arguments.seed + arguments.n)
     found = [
-        kept(FOLDER, str(seed), arguments.resume, lambda: plan(planner, seed))
+        kept(FOLDER, seed, arguments.resume, partial(plan, planner))
         for seed in tqdm(seeds, desc="plans")
     ]
     rows = plan_rows(found) + derivative_rows(planner)

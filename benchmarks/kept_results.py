@@ -12,15 +12,14 @@ from typing import Any, Final
 RUNS: Final = Path(__file__).parent.parent / "runs"
 
 
-def kept(folder: str, case: str, resume: bool, measure: Callable[[], dict[str, Any]]) -> Any:
-    """What ``measure`` says of a case, as JSON keeps it; its file says so if it may be used.
+def kept(folder: str, seed: int, resume: bool, measure: Callable[[int], dict[str, Any]]) -> Any:
+    """What ``measure`` says of a seed, as JSON keeps it; its file says so if it may be used.
 
     Args:
-        folder: of the benchmark, in ``runs``.
-        case: the file's name without its end.
+        folder: of the cases, in ``runs``.
     """
-    path = RUNS / folder / f"{case}.json"
+    path = RUNS / folder / f"{seed}.json"
     if not resume or not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(measure(), indent=1))
+        path.write_text(json.dumps(measure(seed), indent=1))
     return json.loads(path.read_text())

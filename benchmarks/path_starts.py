@@ -14,17 +14,17 @@ from motion_node.timing.time_paths import time_paths
 
 Array = NDArray[np.float64]
 
-#: Standard deviation of the bends of a starting point [rad].
+#: Standard deviation of the bends of a starting point, at most [rad].
 BEND = 0.1
 
 
 def best_of_starts(
     planner: MotionPlanner, motion: Motion, starts: int, rng: np.random.Generator
 ) -> tuple[float, float]:
-    """Duration of a motion's ways by that of the best ways, and the share of starts that led to one.
+    """Duration of a motion's ways by the best ways', and the share of starts that lead to any.
 
-    Each way is solved between its ends from so many random bends of its solution; what is found is
-    timed by itself. The motion's own ways count among the best.
+    Each way is solved between its ends from other heights over the stacks, and from random bends of
+    its solution; what is found is timed by itself. The motion's own ways count among the best.
     """
     _, problem = planner.prepare(len(motion.phases[0].columns))
     clear = Clearances(planner.settings.path.margin, motion.floor)
@@ -33,12 +33,15 @@ def best_of_starts(
     for path in motion.paths:
         own = least = _duration(planner, path)
         share = np.linspace(0.0, 1.0, len(path.q))[:, None]
-        for _ in range(starts):
-            bends = rng.normal(0.0, BEND, (2, path.q.shape[1]))
+        ends = path.q[[0, -1]]
+        first = list(problem.straight_starts(path.phase, ends, clear))
+        for index in range(starts):
+            bends = rng.normal(0.0, rng.uniform(0.0, BEND), (2, path.q.shape[1]))
             bent = sum(b * np.sin(np.pi * (k + 1) * share) for k, b in enumerate(bends))
+            start = first[index] if index < len(first) else path.q + bent
             tried += 1
             try:
-                found = problem.solve([path.phase], path.q[[0, -1]], clear, [path.q + bent])[0]
+                found = problem.solve([path.phase], ends, clear, [start])[0]
             except InfeasibleError:
                 continue
             solved += 1

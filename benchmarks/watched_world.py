@@ -87,7 +87,7 @@ class WatchedArm(PhysicalArm):
         with suppress(TrajectoryError):
             self._controller.follow(PANDA.joint_names, trajectory.times, positions, velocities)
 
-    def observe(self, fingers: np.ndarray) -> None:
+    def observe(self, _fingers: np.ndarray) -> None:
         """Asks for the stop when its time has come, and notes when the arm has come to rest."""
         stop, now = self._stop, self._world.time
         if stop is None or self._sent is None:
