@@ -33,7 +33,7 @@ def best_of_starts(
     for path in motion.paths:
         own = least = _duration(planner, path)
         share = np.linspace(0.0, 1.0, len(path.q))[:, None]
-        ends = path.q[[0, -1]]
+        ends = [path.q[0], path.q[-1]]
         first = list(problem.straight_starts(path.phase, ends, clear))
         for index in range(starts):
             bends = rng.normal(0.0, rng.uniform(0.0, BEND), (2, path.q.shape[1]))

@@ -116,9 +116,9 @@ class WatchedArm(PhysicalArm):
         for name, beside in taken.items():
             body = world.body(name)
             for point in pybullet.getContactPoints(bodyA=body, physicsClientId=world.client):
-                other = self._names.get(point[2])
-                if point[9] > 0.0 and other is not None and other not in beside:
-                    self.touched.add(f"{name} touches {other}")
+                what = self._names.get(point[2])
+                if point[9] > 0.0 and what is not None and what not in beside:
+                    self.touched.add(f"{name} touches {what}")
 
     def _at_hand(self) -> list[int]:
         """The moves whose blocks the fingers may have between them."""
