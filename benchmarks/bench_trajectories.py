@@ -149,7 +149,8 @@ def derivative_rows(planner: MotionPlanner) -> list[Row]:
     name = "all constraints"
     return [
         Row(name, "gradients beside central differences, largest difference", worst[0], "", count,
-            required="<= 1e-6", note=f"of the fourth order, step {STEP:g} rad, at random configurations"),
+            required="<= 1e-6",
+            note=f"of the fourth order, step {STEP:g} rad, at random configurations"),
         Row(name, "Hessians beside central differences, largest difference", worst[1], "", count,
             required="<= 1e-6", note="of a random combination of rows of length 1"),
     ]  # fmt: skip
