@@ -145,7 +145,8 @@ def move_rows(found: list[dict[str, Any]]) -> list[Row]:
 def stop_rows(found: list[dict[str, Any]]) -> list[Row]:
     """Of plans that were stopped."""
     name, n = "stopped at random moments", len(found)
-    rests = [item["rest"] for item in found if np.isfinite(item["rest"])]
+    # An arm that never came to rest counts, and so does one that was never asked.
+    rests = [item["rest"] if item["rest"] < np.inf else np.inf for item in found]
     dropped = [
         item for item in found if not (item["stands"] and item["home"] and item["tilt"] < UPRIGHT)
     ]
