@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock peers train-visual data-masks train-masks record eval-perception eval-photo fit-probability eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-refusals bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock peers train-visual data-masks train-masks record eval-perception eval-photo fit-probability eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-refusals bench-trajectories bench-execution bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -104,6 +104,12 @@ bench-obstacles: setup  ## goals among walls, narrow places and places out of re
 
 bench-refusals: setup  ## moves that cannot be: whether the reason is right, and what would help; RESUME=1 QUICK=1
 	@$(RUN) python benchmarks/bench_refusals.py $(if $(RESUME),--resume)
+
+bench-trajectories: setup  ## a thousand random plans beside meshes, a sampler and other starts; RESUME=1 QUICK=1
+	@$(RUN) python benchmarks/bench_trajectories.py $(if $(RESUME),--resume)
+
+bench-execution: setup  ## random moves and stops in the simulator's world: where blocks end; RESUME=1 QUICK=1
+	@$(RUN) python benchmarks/bench_execution.py $(if $(RESUME),--resume)
 
 bench-planner: setup  ## search times, lengths and bounds; FD=venv with up-fast-downward QUICK=1
 	@$(RUN) python benchmarks/bench_planner.py $(if $(FD),--fd "$(FD)")

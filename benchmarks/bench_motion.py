@@ -120,13 +120,9 @@ def time_rows(planner: MotionPlanner, peers: Peers | None, count: int) -> list[R
 
 def duration_rows(planner: MotionPlanner, peers: Peers | None, count: int) -> list[Row]:
     """How long the arm takes for six moves, and what limits it keeps."""
-    settings = planner.timing
-    limits = JointLimits(
-        settings.velocity_scale * planner.limits.velocity,
-        settings.acceleration_scale * planner.limits.acceleration,
-    )
+    limits = limits_of(planner)
     whole, moving, stretched, ratios = list[float](), list[float](), list[float](), list[float]()
-    jerky, beyond, restless = list[float](), 0, 0
+    jerky, broken = list[float](), list[list[str]]()
     for seed in tqdm(range(FIRST_SEED, FIRST_SEED + count), desc="durations"):
         motion = solve(planner, random_problem(TIMED, seed))
         if motion is None:
@@ -138,14 +134,8 @@ def duration_rows(planner: MotionPlanner, peers: Peers | None, count: int) -> li
         stretched.append(sum(stretched_duration(path, limits) for path in q))
         if peers is not None:
             ratios.append(moving[-1] / peers.toppra(q, limits, GRID))
-        speeds, accelerations = sampled(motion)
-        beyond += bool(
-            (np.abs(speeds) > limits.velocity * (1 + 1e-6)).any()
-            or (np.abs(accelerations) > limits.acceleration * (1 + 1e-6)).any()
-        )
-        restless += bool(np.abs(speeds[[0, -1]]).max() > 1e-9)
-        jerks = np.abs(np.diff(accelerations, axis=0)).max(axis=0) / SAMPLING / JERK
-        jerky.append(float(jerks.max()))
+        broken.append(broken_limits(planner, motion))
+        jerky.append(jerk(motion))
     name, done = f"{TIMED} moves", len(whole)
     rows = [
         Row(name, "duration, fingers included, median", statistics.median(whole), "s", done,
@@ -155,12 +145,14 @@ def duration_rows(planner: MotionPlanner, peers: Peers | None, count: int) -> li
         Row(name, "the same if each way were only stretched in time, median",
             statistics.median(stretched), "s", done, (min(stretched), max(stretched)),
             note="the trivial way to keep limits: that of this project before"),
-        Row(name, "trajectories beyond a limit of velocity or acceleration", beyond, "", done,
+        Row(name, "trajectories beyond a limit of velocity or acceleration",
+            sum("velocity" in b or "acceleration" in b for b in broken), "", done,
             required="== 0", note="sampled every millisecond by scipy"),
-        Row(name, "trajectories that do not begin and end at rest", restless, "", done,
+        Row(name, "trajectories that do not begin and end at rest",
+            sum("rest" in b for b in broken), "", done,
             required="== 0"),
-        Row(name, "trajectories beyond the Panda's limit of jerk", sum(j > 1 for j in jerky), "",
-            done, required="== 0",
+        Row(name, "trajectories beyond the Panda's limit of jerk",
+            sum("jerk" in b for b in broken), "", done, required="== 0",
             note=f"acceleration's changes within a millisecond; at most {max(jerky):.2f} of it"),
     ]  # fmt: skip
     if ratios:
@@ -247,6 +239,33 @@ def sampled(motion: Motion) -> tuple[Array, Array]:
     )
     times = np.append(np.arange(0.0, trajectory.duration, SAMPLING), trajectory.duration)
     return cubic(times, 1), cubic(times, 2)
+
+
+def limits_of(planner: MotionPlanner) -> JointLimits:
+    """Those that trajectories are timed for."""
+    settings = planner.timing
+    return JointLimits(
+        settings.velocity_scale * planner.limits.velocity,
+        settings.acceleration_scale * planner.limits.acceleration,
+    )
+
+
+def jerk(motion: Motion) -> float:
+    """Largest change of acceleration within a sample, as a share of what the Panda may."""
+    _, accelerations = sampled(motion)
+    return float((np.abs(np.diff(accelerations, axis=0)).max(axis=0) / SAMPLING / JERK).max())
+
+
+def broken_limits(planner: MotionPlanner, motion: Motion) -> list[str]:
+    """Of velocity, acceleration, jerk and rest at both ends, what a trajectory does not keep."""
+    limits, (speeds, accelerations) = limits_of(planner), sampled(motion)
+    kept = {
+        "velocity": (np.abs(speeds) <= limits.velocity * (1 + 1e-6)).all(),
+        "acceleration": (np.abs(accelerations) <= limits.acceleration * (1 + 1e-6)).all(),
+        "jerk": jerk(motion) <= 1,
+        "rest": np.abs(speeds[[0, -1]]).max() <= 1e-9,
+    }
+    return [name for name, holds in kept.items() if not holds]
 
 
 def prepared_planner(lengths: Sequence[int]) -> MotionPlanner:

@@ -10,7 +10,6 @@ that was stopped can be taken up again. Writes ``benchmarks/results/refusals.jso
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -18,6 +17,7 @@ from typing import Final
 
 import numpy as np
 import pybullet_data
+from kept_results import kept
 from obstacle_oracle import ObstacleOracle
 from refusal_tables import KINDS, Refused, followed
 from results_file import Row, print_rows, quick, wilson_interval, write_result
@@ -34,7 +34,7 @@ from motion_node.planner import MotionPlanner
 FIRST_SEED: Final = 1000
 #: Problems are built for so many obstacles.
 MOST: Final = 4
-FOLDER: Final = Path(__file__).parent.parent / "runs" / "refusals"
+FOLDER: Final = "refusals"
 
 
 @dataclass(frozen=True)
@@ -127,15 +127,6 @@ class Bench:
         return "a mesh touches an obstacle" if touched else ""
 
 
-def kept(bench: Bench, seed: int, resume: bool) -> Result:
-    """The result of a seed, measured unless its file is there and may be used."""
-    path = FOLDER / f"{seed}.json"
-    if not resume or not path.exists():
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(asdict(bench.one(seed)), indent=1))
-    return Result(**json.loads(path.read_text()))
-
-
 def rows_of(results: list[Result]) -> list[Row]:
     """The published numbers."""
     rows = list[Row]()
@@ -176,7 +167,10 @@ def main() -> None:
     arguments = parser.parse_args()
     start, bench = time.perf_counter(), Bench()
     seeds = range(arguments.seed, arguments.seed + arguments.n)
-    results = [kept(bench, seed, arguments.resume) for seed in tqdm(seeds)]
+    results = [
+        Result(**kept(FOLDER, seed, arguments.resume, lambda own: asdict(bench.one(own))))
+        for seed in tqdm(seeds)
+    ]
     rows = rows_of(results)
     print_rows(rows)
     told = [

@@ -12,6 +12,7 @@ from executive_bench import Bench
 from simulated_arm import (
     BESIDE,
     BLOCKS,
+    HALF_BLOCK,
     OPEN,
     PLAN,
     two_moves,
@@ -126,21 +127,25 @@ def test_a_stop_in_any_phase_ends_at_home_with_an_empty_hand(
     end = bench.carry_out()
     assert (end.state, end.reason) == (MotionState.CANCELLED, MotionReason.NONE)
     assert end.moves_done == moves_done
-    assert end.message == f"stopped on request after {moves_done} of 2 moves; the arm is home"
+    held = ("green_box", "blue_box")[move] if phase == PLACE else ""
+    done = f"{held} was put down on stack2 and " if held else ""
+    assert end.message == f"stopped on request after {moves_done} of 2 moves; {done}the arm is home"
     assert bench.arm.at_home()
     np.testing.assert_allclose(bench.arm.joints.fingers, OPEN, atol=1e-3)
     assert len(bench.arm.sent) == 3  # the plan, the brake, the way home
-    assert bench.planner.ways_home == [moves_done]
+    assert (bench.planner.put_downs, bench.planner.ways_home) == (
+        ([move], []) if held else ([], [moves_done])
+    )
 
 
-def test_a_block_in_hand_is_put_down_before_the_arm_brakes(bench: Bench) -> None:
-    bench.when(PLACE, 0, bench.stop.set)
+def test_an_arm_with_a_block_in_hand_brakes_at_once_and_holds_it(bench: Bench) -> None:
+    bench.when(PLACE, 0, bench.stop.set, progress=0.2)
     bench.carry_out()
     brake, joints = bench.arm.sent[1]
-    assert joints.fingers.min() > 0.95 * BESIDE
+    np.testing.assert_allclose(joints.fingers, HALF_BLOCK, atol=1e-3)
+    assert brake.duration == bench.settings.brake_seconds
     assert not brake.velocities.arm[-1].any()
-    placed = two_moves().sample(two_moves().intervals[3].end)[0]
-    np.testing.assert_allclose(joints.arm, placed.arm, atol=0.01)
+    assert np.ptp(brake.positions.fingers, axis=0).max() == 0.0
 
 
 @pytest.mark.parametrize("share", [0.0, 0.2, 0.4, 0.6])

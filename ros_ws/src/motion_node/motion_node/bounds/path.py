@@ -18,7 +18,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..constraints import Clearances, Constraint
+from ..constraints import AlongPath, Clearances, Constraint
 from ..errors import PATH, InfeasibleError
 from ..nlp import Attached, Demand, DifferenceCost, KOrderProblem, Solution, SolverFactory
 from ..obstacles import Obstacle
@@ -145,6 +145,10 @@ class PathProblem:
                 ]
             attempts.append(solution)
         raise self._error(phases, min(attempts, key=lambda item: item.violation))
+
+    def along(self, phase: Phase, ends: Sequence[Array], clear: Clearances) -> AlongPath:
+        """What constraints are told of one phase between its first and last configuration."""
+        return self._ways([phase], [ends[0], ends[-1]], clear)[0].along
 
     def demands(self, phase: Phase, ends: Sequence[Array], clear: Clearances) -> list[Demand]:
         """What is asked of one phase between two configurations."""

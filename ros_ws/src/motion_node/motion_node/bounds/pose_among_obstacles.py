@@ -84,11 +84,9 @@ class PosesAmongObstacles(Poses):
         if missed.min() > _THERE:
             q = self._inverse.moved(q, np.tile(position, (len(q), 1)))
             missed = np.linalg.norm(self._inverse.residual(q, position), axis=1)
-            x, y, z = phase.switch.position_world
-            place = f"({x:.2f}, {y:.2f}, {z:.2f}) at stack{phase.switch.stack}"
             return InfeasibleError(
                 POSE,
-                f"reach of the hand to {place}{self._at_limits(q[missed.argmin()])}",
+                f"{_reach(phase)}{self._at_limits(q[missed.argmin()])}",
                 object_name=phase.object_name,
                 violation=float(missed.min()),
                 move=phase.move,
@@ -106,6 +104,9 @@ class PosesAmongObstacles(Poses):
         demands = self._problems.demands([alone], clear)
         if not self.possible(alone, demands):
             error.excludes = fixed
+            if error.constraint.endswith(f" to stack{phase.switch.stack}"):
+                # The hand gets there only with the arm in the stack that it is to stand on.
+                error.constraint = f"{_reach(phase)} with {error.constraint}"
         return error
 
     def _at_limits(self, q: Array) -> str:
@@ -114,6 +115,12 @@ class PosesAmongObstacles(Poses):
         end = np.isclose(q, model.lower, atol=1e-3) | np.isclose(q, model.upper, atol=1e-3)
         names = [name for name, there in zip(model.arm.arm_joints, end) if there]
         return f", with {' and '.join(names)} at the limit" if names else ""
+
+
+def _reach(phase: Phase) -> str:
+    assert phase.switch is not None
+    x, y, z = phase.switch.position_world
+    return f"reach of the hand to ({x:.2f}, {y:.2f}, {z:.2f}) at stack{phase.switch.stack}"
 
 
 def _alone(phase: Phase, clear: Clearances) -> tuple[Column, ...]:

@@ -25,21 +25,27 @@ def pulled(
     table: Table,
     possible: Callable[[Table], bool],
     over: Callable[[], bool],
+    shares: Sequence[float] = _SHARES,
+    exact: float = _EXACT,
 ) -> Change | None:
     """The least pull of one of the levers, or of heights alike, with which a table is possible.
 
     Each is pulled ever farther until it is; then the bound in between is halved. None: no pull
     that was tried is enough.
+
+    Args:
+        shares: of a lever's reach, in the order in which they are tried.
+        exact: how well a pull is known [m].
     """
     best: Change | None = None
     for way in _ways(levers):
         less = 0.0
-        for share in _SHARES:
+        for share in shares:
             change = as_can_be_done(levers, (share * way).tolist())
-            if change is None or over() or (best is not None and change.size >= best.size):
+            if change is None or over() or (best and less * np.abs(way).sum() >= best.size):
                 break
             if possible(change.made(table)):
-                found = _halved(levers, way, (less, share), change, table, possible, over)
+                found = _halved(levers, way, (less, share), change, table, possible, over, exact)
                 best = found if best is None or found.size < best.size else best
                 break
             less = share
@@ -64,10 +70,11 @@ def _halved(
     table: Table,
     possible: Callable[[Table], bool],
     over: Callable[[], bool],
+    exact: float,
 ) -> Change:
     """The least change along a way between a share that is too little and one that is enough."""
     less, enough = between
-    while (enough - less) * np.abs(way).max() > _EXACT and not over():
+    while (enough - less) * np.abs(way).max() > exact and not over():
         middle = (less + enough) / 2
         other = as_can_be_done(levers, (middle * way).tolist())
         if other is not None and possible(other.made(table)):

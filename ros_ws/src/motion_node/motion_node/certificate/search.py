@@ -26,10 +26,7 @@ from ..planner import MotionPlanner
 from ..refining import objection
 from .changes import Change, as_can_be_done
 from .families import Families
-from .levers import (
-    Lever,
-    Table,
-)
+from .levers import HeightLever, Lever, ObstacleLever, Table
 from .pulling import pulled
 from .tower_lever import TowerLever
 from .tries import UNIT, Tries, Try, among
@@ -40,6 +37,8 @@ Array = NDArray[np.float64]
 _GROWTH: Final = 0.01
 #: Changes that are enough and too little are as good as one if they are this near [m].
 _NEAR: Final = 0.005
+#: How well is known how far to move what bars a way, where a trial is a whole plan [m].
+_ROUGHLY: Final = 0.02
 #: So often the way from too little to enough is halved.
 _HALVINGS: Final = 4
 #: So many changes are checked at most.
@@ -181,7 +180,16 @@ class _Search:
         """What may be enough, of each family of levers."""
         families = list(self._families.of(error, tries))
         if error.bound == PATH:
-            for levers, hopeful in families:
+            # What bars a way is far from any solution, and an elastic problem of a way that finds
+            # none takes as long as many plans: plans are tried first.
+            found = False
+            for levers, _ in families:
+                if all(isinstance(lever, (HeightLever, ObstacleLever)) for lever in levers) and (
+                    change := pulled(levers, self._table, self._feasible, over, (1.0,), _ROUGHLY)
+                ):
+                    found = True
+                    yield change
+            for levers, hopeful in () if found else families:
                 if change := self._mended(levers, self._table, hopeful, Change((), ()), over):
                     yield change
             return
@@ -207,6 +215,9 @@ class _Search:
             else:
                 little = middle
         return enough
+
+    def _feasible(self, table: Table) -> bool:
+        return self._refusal(table) is None
 
     def _refusal(self, table: Table) -> InfeasibleError | None:
         """Why the plan cannot be carried out on a table; None: it can."""

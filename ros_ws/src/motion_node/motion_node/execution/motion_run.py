@@ -76,7 +76,9 @@ class MotionRun:
         return self._may_stop() or self._may_correct() or self._is_unseen()
 
     def _may_stop(self) -> bool:
-        return self._stopped() and self._follower.empty_handed
+        # Where the fingers are letting go of a block the arm stands: it is put down then.
+        follower = self._follower
+        return self._stopped() and (follower.empty_handed or not follower.interval.gripping)
 
     def _may_correct(self) -> bool:
         return self._corrections is not None and self._corrections.is_due(self.motion, self._time)
