@@ -143,7 +143,8 @@ def without_leaks(facets: Facets, height: Array, reach: int) -> Facets:
     count, pieces = _connected(kept, same)
     shared = np.where(wide, pieces, 0)
     for _ in range(2 * reach):
-        spread(shared, facets.ids > 0)
+        if not spread(shared, facets.ids > 0):
+            break
     return Facets(pieces, count - 1, _borders(count, pieces, shared))
 
 
@@ -165,7 +166,7 @@ def spread(
     free: Mask,
     links: Sequence[Mask] | None = None,
     may: Callable[[NDArray[Any], tuple[slice, ...]], Mask] | None = None,
-) -> None:
+) -> bool:
     """Gives free pixels without a label that of a neighbour: the one below, else beside, or above.
 
     What is seen above a face is its lid or the ledge on which the next one stands.
@@ -175,18 +176,25 @@ def spread(
         free: which may be given one.
         links: by axis, which neighbours labels pass between, (h - 1, w), (h, w - 1); None: all.
         may: whether pixels, given as slices, may have such labels; None: they may.
+
+    Returns:
+        Whether any was given one.
     """
-    found = labels.copy()
+    found, given = labels.copy(), False
     for axis in (0, 1):
         low, high = _sides(axis)
         for to, source in ((low, high), (high, low)):
             takes = free[to] & (found[to] == 0) & (labels[source] > 0)
             if links is not None:
                 takes &= links[axis]
+            if not takes.any():
+                continue
             if may is not None:
                 takes &= may(labels[source], to)
             found[to][takes] = labels[source][takes]
+            given = given or bool(takes.any())
     labels[...] = found
+    return given
 
 
 def on_one_body(points: Array, depth: Array) -> list[Mask]:

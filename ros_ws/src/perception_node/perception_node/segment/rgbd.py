@@ -192,7 +192,8 @@ def _take_strips(labels: NDArray[np.uint16], pieces: Facets, region: Region, wid
     alike = [link & same for link, same in zip(near, pieces.links())]
     for links, may in ((alike, as_high), (near, as_high), (near, None)):
         for _ in range(width):
-            spread(labels, pieces.ids > 0, links, may)
+            if not spread(labels, pieces.ids > 0, links, may):
+                break
 
 
 def _grow_down(
