@@ -26,6 +26,7 @@ from .places.table import table_problem
 from .probability import evidence, load_parameters, probability
 from .segment import (
     RGB,
+    RGBD,
     SEGMENTERS,
     Segmenter,
     Segments,
@@ -34,6 +35,7 @@ from .segment import (
     given_labels,
 )
 from .sight import sight_problem
+from .strays import find_strays, with_strays
 from .verdict import Verdict, judge, judge_empty, judge_fallen, with_grain
 from .visual_module.coordinates import Locator
 
@@ -161,6 +163,8 @@ class Perception:
         verdict = with_grain(verdict, observation.noise)
         likely = probability(known, self._probability)
         graph = with_fallen(graph, fallen) if fallen else graph
+        if self._volume is not None and config.mask_source == RGBD:
+            graph = with_strays(graph, find_strays(taken, self._volume, segments))
         return Perceived(graph, *verdict, segments, likely, known)
 
     def _seen(self, observation: Observation, segments: Segments, places: Places) -> Seen:
