@@ -4,9 +4,9 @@
 Of each kind of the fault campaign's world N tasks, with the planner's ``verify`` as VERIFY=watch
 says (or end,watch), and QUIET tasks that nobody disturbs, each with verify end and watch in turns.
 Judged by ground truth, by what a refusal names, and by whether the arm took another block before
-it was noticed. All kinds take turns, so that MINUTES=15 measures as many of each as there is time for,
-and tells of these. Stops cleanly on Ctrl-C, too; RESUME=1 goes on; JOBS=2 runs graphs side by side.
-KIND= and SEED= run single tasks again, which writes nothing into benchmarks/results.
+it was noticed. All kinds take turns, so that MINUTES=15 measures as many of each as there is time
+for, and tells of these. Stops cleanly on Ctrl-C, too; RESUME=1 goes on; JOBS=2 runs graphs side by
+side. KIND= and SEED= run single tasks again, which writes nothing into benchmarks/results.
 """
 
 from __future__ import annotations
@@ -74,9 +74,7 @@ def plan_tasks(
     return tasks
 
 
-def run_tasks(
-    real_time_factor: float, minutes: float, tasks: Sequence[Task], share: int
-) -> None:
+def run_tasks(real_time_factor: float, minutes: float, tasks: Sequence[Task], share: int) -> None:
     """Runs those whose results are not there yet; each result goes into its file.
 
     Args:

@@ -79,7 +79,6 @@ def _noticing_rows(name: str, records: Sequence[Record], required: str | None) -
     if not felt:
         return []
     in_time = sum(item["in_time"] for item in felt)
-    # Of these is each of those that are felt: a next grasp is any grasp.
     any_felt = [item for item in records if was_felt(item) and item["in_time_of_any"] is not None]
     of_any = sum(item["in_time_of_any"] for item in any_felt)
     rows = [

@@ -10,7 +10,7 @@ from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
 
 from motion_node.timing.time_paths import TimingSettings
 
-#: Before a block is taken its fingers have been closing for at least so long: what happens meanwhile
+#: Before a block is taken fingers have been closing for at least so long: what happens meanwhile
 #: happens during this grasp, and before the next one [ns].
 CLOSING: Final = round(1e9 * TimingSettings().close_seconds)
 

@@ -67,9 +67,9 @@ FAULTS = (
     Fault("world-arm-nudged", "somebody bumps into the arm", Disturbed(_Ask.NUDGE), ALL_PHASES,
           ((*_ASTRAY, *_GRIP, "controller", "behind"),)),
     # A motion under way that is obstructed, and a block that is not seen as the hand comes to it.
-    Fault("obstacle-comes-1s", "obstacles are told in the way of the motion, and are gone after 1 s",
+    Fault("obstacle-comes-1s", "obstacles are told in the motion's way, and are gone after 1 s",
           InTheWay(), (Phase.EXECUTE,), (("obstacle", "in the way"),), 1.0, transient=True),
-    Fault("obstacle-stays", "obstacles are told in the way of the motion, and stay", InTheWay(),
+    Fault("obstacle-stays", "obstacles are told in the motion's way, and stay", InTheWay(),
           (Phase.EXECUTE,), (("obstacle", "in the way", "bar"),)),
     Fault("watched-block-taken-at-the-grasp", "a block is taken away as the hand comes down on it",
           TAKEN, _FIRST, ((*_GONE, *_CHANGED, *_GRIP),), parameters=_WATCHED),

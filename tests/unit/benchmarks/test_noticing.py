@@ -37,9 +37,7 @@ def at(course: list[MotionReport], stops: list[int], after: int) -> int | None:
     return None if found is None else found // SECOND
 
 
-def in_time(
-    course: list[MotionReport], stops: list[int], after: float, **more: Any
-) -> bool | None:
+def in_time(course: list[MotionReport], stops: list[int], after: float, **more: Any) -> bool | None:
     return noticed_in_time(course, [SECOND * stop for stop in stops], int(SECOND * after), **more)
 
 

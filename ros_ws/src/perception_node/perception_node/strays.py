@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blocks that lie before the row of places, where nothing is planned on: they are named all the same.
+"""Blocks that lie before the row of places, where nothing is planned on: they are named, too.
 
-A block that is pushed off a tower ends up there. It is in no relation and has no size, like one that
-lies among the places, see :mod:`.fallen`; only it is in nobody's way.
+A block that is pushed off a tower ends up there. It is in no relation and has no size, like one
+that lies among the places, see :mod:`.fallen`; only it is in nobody's way.
 """
 
 from __future__ import annotations
