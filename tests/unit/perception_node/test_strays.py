@@ -35,6 +35,7 @@ def test_a_block_that_fell_before_the_row_is_named_and_blinds_for_nothing(
     assert graph.relations == up_relations(STANDING)
     if perceived.status is not GraphStatus.CONFIDENT:  # it stands before a place
         assert perceived.status is GraphStatus.OCCLUDED
+        assert perceived.message.endswith("before the places lies blue_box")
 
 
 def test_what_stands_on_its_place_is_no_stray(world: World) -> None:

@@ -36,7 +36,7 @@ from .segment import (
 )
 from .sight import sight_problem
 from .strays import find_strays, with_strays
-from .verdict import Verdict, judge, judge_empty, judge_fallen, with_grain
+from .verdict import Verdict, judge, judge_empty, judge_fallen, with_grain, with_stray
 from .visual_module.coordinates import Locator
 
 
@@ -164,7 +164,8 @@ class Perception:
         likely = probability(known, self._probability)
         graph = with_fallen(graph, fallen) if fallen else graph
         if self._volume is not None and config.mask_source == RGBD:
-            graph = with_strays(graph, find_strays(taken, self._volume, segments))
+            strays = find_strays(taken, self._volume, segments)
+            graph, verdict = with_strays(graph, strays), with_stray(verdict, strays)
         return Perceived(graph, *verdict, segments, likely, known)
 
     def _seen(self, observation: Observation, segments: Segments, places: Places) -> Seen:
