@@ -84,9 +84,9 @@ eval-faults: setup  ## faults of every kind in every phase, and what becomes of 
 	  $(if $(SEED),--seed $(SEED)) $(if $(TRIALS),--trials $(TRIALS)) $(if $(RTF),--real-time-factor $(RTF)) \
 	  $(if $(JOBS),--jobs $(JOBS)) $(if $(RESUME),--resume) $(ARGS)
 
-eval-disturbances: setup  ## tasks disturbed at random moments, and undisturbed ones; VERIFY=end|each_move|watch N= QUIET= KIND= SEED= JOBS= RTF= RESUME=1 QUICK=1
+eval-disturbances: setup  ## tasks disturbed at random moments, and undisturbed ones; VERIFY=end|each_move|watch N= QUIET= MINUTES= KIND= SEED= JOBS= RTF= RESUME=1 QUICK=1
 	@$(RUN) python benchmarks/eval_disturbances.py $(if $(KIND),--kind "$(KIND)") $(if $(VERIFY),--verify "$(VERIFY)") \
-	  $(if $(N),--n $(N)) $(if $(QUIET),--quiet $(QUIET)) $(if $(SEED),--seed $(SEED)) $(if $(RTF),--real-time-factor $(RTF)) \
+	  $(if $(N),--n $(N)) $(if $(QUIET),--quiet $(QUIET)) $(if $(MINUTES),--minutes $(MINUTES)) $(if $(SEED),--seed $(SEED)) $(if $(RTF),--real-time-factor $(RTF)) \
 	  $(if $(JOBS),--jobs $(JOBS)) $(if $(RESUME),--resume) $(ARGS)
 
 eval-replay: setup  ## executed tasks once more in MuJoCo; N= BLOCKS= SOURCE=graph|process RTF= SEED= RESUME=1 QUICK=1

@@ -4,8 +4,9 @@
 Of each kind of the fault campaign's world N tasks, with the planner's ``verify`` as VERIFY=watch
 says (or end,watch), and QUIET tasks that nobody disturbs, each with verify end and watch in turns.
 Judged by ground truth, by what a refusal names, and by whether the arm took another block before
-it was noticed. Stops cleanly on Ctrl-C; RESUME=1 goes on; JOBS=2 runs graphs side by side. KIND=
-and SEED= run single tasks again, which writes nothing into benchmarks/results.
+it was noticed. All kinds take turns, so that MINUTES=15 measures as many of each as there is time
+for, and tells of these. Stops cleanly on Ctrl-C, too; RESUME=1 goes on; JOBS=2 runs graphs side by
+side. KIND= and SEED= run single tasks again, which writes nothing into benchmarks/results.
 """
 
 from __future__ import annotations
@@ -36,6 +37,8 @@ FIRST_SEED: Final = 1000
 FOLDER: Final = Path("runs") / "eval_disturbances"
 AGAIN: Final = FOLDER / "again"
 QUICK: Final = ("swap",)
+#: What a task of verify watch took on two cores, most of them carrying some nine moves out [s].
+TASK_SECONDS: Final = 30.0
 
 
 @dataclass(frozen=True)
@@ -71,15 +74,20 @@ def plan_tasks(
     return tasks
 
 
-def run_tasks(real_time_factor: float, tasks: Sequence[Task], share: int) -> None:
-    """Runs those whose results are not there yet; each result goes into its file."""
+def run_tasks(real_time_factor: float, minutes: float, tasks: Sequence[Task], share: int) -> None:
+    """Runs those whose results are not there yet; each result goes into its file.
+
+    Args:
+        minutes: after which none is begun any more; 0: all are.
+    """
+    until = time.monotonic() + 60.0 * minutes if minutes else float("inf")
     left = [task for task in tasks if not task.path.exists()]
     folder, done = FOLDER / f"graph{share}", len(tasks) - len(left)
     with tqdm(total=len(tasks), initial=done, unit="task", position=share) as progress:
-        while left:
+        while left and time.monotonic() < until:
             with Graph(folder, (), real_time_factor) as setting:
                 whole = True
-                while left and whole:
+                while left and whole and time.monotonic() < until:
                     task, *left = left
                     progress.set_postfix_str(f"{task.kind}, {task.verify}")
                     result, whole = _try(setting, task)
@@ -102,6 +110,16 @@ def _try(setting: Setting, task: Task) -> tuple[dict[str, Any], bool]:
         ), False
 
 
+def told_duration(tasks: Sequence[Task], options: argparse.Namespace) -> str:
+    """How many tasks are to be run, and for about how long, in words."""
+    left = [task for task in tasks if not (options.resume and task.path.exists())]
+    minutes = len(left) * TASK_SECONDS / options.jobs / 60.0
+    told = f"{len(left)} tasks of about {TASK_SECONDS:g} s: {minutes:.0f} min"
+    if options.minutes and options.minutes < minutes:
+        told += f"; those that can be begun within {options.minutes:g} min"
+    return told
+
+
 def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--kind", default="", help=f"of {', '.join((*KINDS, NOTHING))}: a,b")
@@ -110,6 +128,7 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--quiet", type=int, default=100, help="tasks that nobody disturbs")
     parser.add_argument("--seed", type=int, help="one task a kind with this seed")
     parser.add_argument("--real-time-factor", type=float, default=1.0)
+    parser.add_argument("--minutes", type=float, default=0.0, help="begin no task after; 0: all")
     campaign.add_arguments(parser)
     options = parser.parse_args()
     options.kinds = options.kind.split(",") if options.kind else [*KINDS, NOTHING]
@@ -128,7 +147,10 @@ def main() -> int:
     tasks = plan_tasks(options.kinds, options.verify, options.n, options.quiet, options.seed)
     single = bool(options.kind or options.seed is not None)
     started = time.monotonic()
-    records = campaign.run_campaign(tasks, options, partial(run_tasks, options.real_time_factor))
+    if options.share is None and not options.report:
+        print(told_duration(tasks, options), flush=True)
+    run = partial(run_tasks, options.real_time_factor, options.minutes)
+    records = campaign.run_campaign(tasks, options, run)
     if isinstance(records, int):
         return records
     rows = make_rows(records)
@@ -140,6 +162,7 @@ def main() -> int:
     command = (
         f"make eval-disturbances VERIFY={','.join(options.verify)} N={options.n} "
         f"QUIET={options.quiet} RTF={options.real_time_factor:g}"
+        + (f" MINUTES={options.minutes:g}" if options.minutes else "")
         + (f" JOBS={options.jobs}" if options.jobs > 1 else "")
     )
     seconds = sum(record["wall_seconds"] for record in records) / options.jobs

@@ -67,14 +67,15 @@ class Disturbed(Once):
         return Disturb.Request(kind=self.kind, blocks=blocks, on=on, **self.fields)
 
     def begin(self, setting: Setting) -> None:
-        _ask(self.request(setting.initial, setting.seed))
+        ask(self.request(setting.initial, setting.seed))
 
     def end(self, setting: Setting) -> None:
         setting.wait_for_nodes("sim_node")
-        _ask(Disturb.Request(kind=Disturb.Request.CALM))
+        ask(Disturb.Request(kind=Disturb.Request.CALM))
 
 
-def _ask(request: Disturb.Request) -> None:
+def ask(request: Disturb.Request) -> None:
+    """Has the simulator do it; raises RuntimeError if it does not."""
     with DisturbClient() as simulator:
         try:
             answer = simulator.disturb(request, timeout=30.0)

@@ -147,6 +147,11 @@ class Eyes:
         with self._news:
             return nanoseconds(self._truths[-1].header.stamp) if self._truths else 0
 
+    def joints_stamp(self) -> int:
+        """The simulated time of the newest joint states [ns]; 0 if there are none."""
+        data = self._joints
+        return nanoseconds(deserialize_message(data, JointState).header.stamp) if data else 0
+
     def fresh_truth_stamp(self) -> int:
         """The simulated time of now [ns]; raises SimulationError if none arrives."""
         self.fresh_truth()

@@ -79,10 +79,15 @@ def _noticing_rows(name: str, records: Sequence[Record], required: str | None) -
     if not felt:
         return []
     in_time = sum(item["in_time"] for item in felt)
+    any_felt = [item for item in records if was_felt(item) and item["in_time_of_any"] is not None]
+    of_any = sum(item["in_time_of_any"] for item in any_felt)
     rows = [
         Row(name, "noticed before the next grasp", in_time / len(felt), "", len(felt),
             wilson_interval(in_time, len(felt)), required,
-            note="of those that moved a block on the table or made a difference to the task")
+            note="before a block was taken in a grasp that began after it; of those that moved a "
+            "block on the table or made a difference to the task"),
+        Row(name, "noticed before the next grasp, one whose fingers were closing included",
+            of_any / len(any_felt), "", len(any_felt), wilson_interval(of_any, len(any_felt))),
     ]  # fmt: skip
     could = [item for item in felt if item["in_time"] or (item["until_grasp"] or 0.0) >= LEAD]
     missed = sum(not item["in_time"] for item in could)

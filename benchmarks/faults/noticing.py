@@ -4,8 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Final
 
 from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
+
+from motion_node.timing.time_paths import TimingSettings
+
+#: Before a block is taken fingers have been closing for at least so long: what happens meanwhile
+#: happens during this grasp, and before the next one [ns].
+CLOSING: Final = round(1e9 * TimingSettings().close_seconds)
 
 
 def grasps(reports: Iterable[MotionReport]) -> list[int]:
@@ -59,26 +66,32 @@ def noticed_at(reports: Sequence[MotionReport], stops: Iterable[int], after: int
     return min(found, default=None)
 
 
-def _goes_home_early(report: MotionReport) -> bool:
-    going = report.state is MotionState.EXECUTING and report.phase == "home"
-    return going and report.moves_done < report.moves_total
-
-
-def grasps_after(reports: Iterable[MotionReport], after: int, passed: int = 0) -> list[int]:
-    """When blocks were taken after a moment [ns].
+def grasps_after(
+    reports: Iterable[MotionReport], after: int, passed: int = 0, under_way: bool = False
+) -> list[int]:
+    """When blocks were taken after a moment [ns], in grasps that began after it.
 
     Args:
+        under_way: also in the one whose fingers were closing then.
         passed: the first of them, as many as belong to what happened: a block slips out of the
             hand that has just taken it, or fingers that are jammed do not take it.
     """
-    return [stamp for stamp in grasps(reports) if stamp > after][passed:]
+    since = after if under_way or passed else after + CLOSING
+    return [stamp for stamp in grasps(reports) if stamp > since][passed:]
 
 
 def noticed_in_time(
-    reports: Sequence[MotionReport], stops: Iterable[int], after: int, passed: int = 0
+    reports: Sequence[MotionReport],
+    stops: Iterable[int],
+    after: int,
+    passed: int = 0,
+    under_way: bool = False,
 ) -> bool | None:
-    """Whether it was noticed before the next grasp; None where neither came."""
-    later = grasps_after(reports, after, passed)
+    """Whether it was noticed before the next block was taken; None where neither came.
+
+    Args: see :func:`grasps_after`.
+    """
+    later = grasps_after(reports, after, passed, under_way)
     noticed = noticed_at(reports, stops, after)
     if noticed is None:
         return False if later else None

@@ -91,7 +91,9 @@ class MomentResult:
         effect: see :class:`Disturbance`.
         ending: one of :class:`faults.fault.Ending`.
         named: whether a refusal names one of the blocks that it was about; True where none is.
-        in_time: whether it was noticed before the next grasp; None where neither came.
+        in_time: whether it was noticed before a block was taken in a grasp that began after it;
+            None where neither came.
+        in_time_of_any: the same, with the grasp whose fingers were closing when it happened.
         latency: from the moment until it was noticed, in simulated time [s].
         until_grasp: from the moment until the next grasp, if there was one, likewise.
         grasps_lost, replans, stops: over the task.
@@ -113,6 +115,7 @@ class MomentResult:
     message: str = ""
     causes: tuple[str, ...] = ()
     in_time: bool | None = None
+    in_time_of_any: bool | None = None
     latency: float | None = None
     until_grasp: float | None = None
     grasps_lost: int = 0
@@ -142,13 +145,14 @@ def run_at_random_moment(
     started, begun = time.monotonic(), eyes.fresh_truth_stamp()
     asker = setting.asker = ProgramAsker(setting.planner)
     asker.start(task.goal)
-    try:
-        answer, disturbance = _wait(setting, kind, asker)
-    finally:
-        setting.asker = None
-        asker.close()
-        if kind != NOTHING:
-            with DisturbClient() as simulator:
+    # Made before, so that what is asked for happens at once.
+    with DisturbClient() as simulator:
+        try:
+            answer, disturbance = _wait(setting, kind, asker, simulator)
+        finally:
+            setting.asker = None
+            asker.close()
+            if kind != NOTHING:
                 simulator.disturb(Disturb.Request(kind=Disturb.Request.CALM), timeout=30.0)
     result = replace(
         result,
@@ -159,7 +163,7 @@ def run_at_random_moment(
 
 
 def _wait(
-    setting: Setting, kind: str, asker: ProgramAsker
+    setting: Setting, kind: str, asker: ProgramAsker, simulator: DisturbClient
 ) -> tuple[Answer | None, Disturbance | None]:
     """Waits for the answer; lets it happen at its moment."""
     rng = np.random.default_rng([setting.seed, 21])
@@ -175,9 +179,9 @@ def _wait(
         setting.processes.check()
         if moment is None and (first := _setting_out(setting.eyes.reports())) is not None:
             moment = first.stamp + int(share * first.duration * 1e9)
-        due = moment is not None and setting.eyes.truth_stamp() >= moment
+        due = moment is not None and setting.eyes.joints_stamp() >= moment
         if kind != NOTHING and disturbance is None and due and now >= again:
-            disturbance = _disturb(setting, kind, attempts)
+            disturbance = _disturb(setting, kind, attempts, simulator)
             attempts, again = attempts + 1, time.monotonic() + _AGAIN
         time.sleep(0.01)
     return answer, disturbance
@@ -189,7 +193,9 @@ def _setting_out(reports: list[MotionReport]) -> MotionReport | None:
                  if item.state is MotionState.EXECUTING and item.duration > 0.0), None)  # fmt: skip
 
 
-def _disturb(setting: Setting, kind: str, attempt: int) -> Disturbance | None:
+def _disturb(
+    setting: Setting, kind: str, attempt: int, simulator: DisturbClient
+) -> Disturbance | None:
     """Lets it happen now; None if the simulator refuses, such as of a block in the hand."""
     eyes, injection = setting.eyes, fault_of(kind).injection
     assert isinstance(injection, Disturbed)
@@ -200,11 +206,11 @@ def _disturb(setting: Setting, kind: str, attempt: int) -> Disturbance | None:
         return None
     stacks = _standing(before, last.held, setting.initial)
     request = injection.request(stacks, 1000 * setting.seed + attempt)
-    with DisturbClient() as simulator:
-        answer = simulator.disturb(request, timeout=30.0)
+    answer = simulator.disturb(request, timeout=30.0)
     if not answer.success:
         return None
-    stamp = eyes.truth_stamp()
+    # Ground truth comes as seldom as pictures: by its time it happened up to one of them before.
+    stamp = eyes.joints_stamp()
     step = f"{last.phase or 'begin'} {min(last.move + 1, last.moves_total)} of {last.moves_total}"
     happened = Disturbance(stamp, tuple(request.blocks), step)
     if kind not in SEEN:
@@ -284,6 +290,7 @@ def _judged(
         blocks=disturbance.blocks,
         named=named,
         in_time=noticed_in_time(reports, stops, disturbance.stamp, passed),
+        in_time_of_any=noticed_in_time(reports, stops, disturbance.stamp, passed, under_way=True),
         latency=None if at is None else round((at - disturbance.stamp) / 1e9, 2),
         until_grasp=round((later[0] - disturbance.stamp) / 1e9, 2) if later else None,
     )

@@ -6,8 +6,10 @@ from __future__ import annotations
 from geometry_msgs.msg import Vector3
 from tamp_interfaces.srv import Disturb
 
+from faults.at_the_grasp import COVERED, PUSHED, TAKEN
 from faults.disturbances import Disturbed, new_block, some_top, two_blocks
 from faults.fault import ALL_PHASES, MOVING_PHASES, Fault, Phase
+from faults.obstacles import InTheWay
 
 _Ask = Disturb.Request
 #: An event of the hand comes after its request.
@@ -20,6 +22,10 @@ _CHANGED = ("differs", "saw", "seen", "moved", "changed", "finger", "path")
 _ASTRAY = (*_CHANGED, "beside", "in the air", "lean", "overhang", "stands on", "tilt", "not on")
 _GRIP = ("finger", "grasp", "grip", "hand", "hold")
 _GONE = ("cannot be seen", "not seen", "no ", "unknown")
+#: The planner watches while the arm moves.
+_WATCHED = (("planner_node", "verify", "watch"),)
+#: The first pick of a plan comes after its optimisation.
+_FIRST = (Phase.OPTIMISE,)
 
 FAULTS = (
     Fault("world-block-pushed", "a block is pushed some 5 cm away from the arm",
@@ -60,4 +66,17 @@ FAULTS = (
           Disturbed(_Ask.SWAP, two_blocks), (Phase.PERCEIVE, Phase.OPTIMISE), (_CHANGED,)),
     Fault("world-arm-nudged", "somebody bumps into the arm", Disturbed(_Ask.NUDGE), ALL_PHASES,
           ((*_ASTRAY, *_GRIP, "controller", "behind"),)),
+    # A motion under way that is obstructed, and a block that is not seen as the hand comes to it.
+    Fault("obstacle-comes-1s", "obstacles are told in the motion's way, and are gone after 1 s",
+          InTheWay(), (Phase.EXECUTE,), (("obstacle", "in the way"),), 1.0, transient=True),
+    Fault("obstacle-stays", "obstacles are told in the motion's way, and stay", InTheWay(),
+          (Phase.EXECUTE,), (("obstacle", "in the way", "bar"),)),
+    Fault("watched-block-taken-at-the-grasp", "a block is taken away as the hand comes down on it",
+          TAKEN, _FIRST, ((*_GONE, *_CHANGED, *_GRIP),), parameters=_WATCHED),
+    Fault("watched-block-pushed-at-the-grasp", "a block is pushed as the hand comes down on it",
+          PUSHED, _FIRST, ((*_ASTRAY, *_GONE, *_GRIP),), parameters=_WATCHED),
+    Fault("watched-covered-at-the-grasp-8s",
+          "a sheet hides everything for 8 s as the hand comes down on a block",
+          COVERED, _FIRST, (("hides", "hidden", "no block", "camera", "not seen"),),
+          transient=True, parameters=_WATCHED),
 )  # fmt: skip

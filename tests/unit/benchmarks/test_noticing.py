@@ -6,18 +6,39 @@ from __future__ import annotations
 from typing import Any
 
 from faults.moment_report import details, make_rows
-from faults.noticing import carried_between, grasps, grasps_lost, noticed_at, noticed_in_time
+from faults.noticing import (
+    CLOSING,
+    carried_between,
+    grasps,
+    grasps_lost,
+    noticed_at,
+    noticed_in_time,
+)
 from faults.random_moment import MomentResult, to_json
 from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
 
 EXECUTING, FAILED = MotionState.EXECUTING, MotionState.FAILED
 
 
+#: In seconds: fingers close for less than one.
+SECOND = 1_000_000_000
+
+
 def said(stamp: int, phase: str, move: int, plan: str = "first", **fields: Any) -> MotionReport:
     return MotionReport(
         plan, fields.pop("state", EXECUTING), move=move, moves_done=move, moves_total=3,
-        phase=phase, stamp=stamp, **fields,
+        phase=phase, stamp=stamp * SECOND, **fields,
     )  # fmt: skip
+
+
+def at(course: list[MotionReport], stops: list[int], after: int) -> int | None:
+    """When it was noticed, all in seconds."""
+    found = noticed_at(course, [SECOND * stop for stop in stops], SECOND * after)
+    return None if found is None else found // SECOND
+
+
+def in_time(course: list[MotionReport], stops: list[int], after: float, **more: Any) -> bool | None:
+    return noticed_in_time(course, [SECOND * stop for stop in stops], int(SECOND * after), **more)
 
 
 COURSE = [
@@ -27,46 +48,55 @@ COURSE = [
 
 
 def test_a_block_is_taken_where_its_place_begins() -> None:
-    assert grasps(COURSE) == [20, 40, 60]
+    assert grasps(COURSE) == [20 * SECOND, 40 * SECOND, 60 * SECOND]
 
 
 def test_a_plan_that_goes_on_was_not_noticed_to_be_wrong() -> None:
-    assert noticed_at(COURSE, [], 32) is None
-    assert noticed_in_time(COURSE, [], 32) is False
-    assert noticed_in_time(COURSE, [], 65) is None  # neither a grasp nor a word came
+    assert at(COURSE, [], 32) is None
+    assert in_time(COURSE, [], 32) is False
+    assert in_time(COURSE, [], 65) is None  # neither a grasp nor a word came
 
 
 def test_a_stop_before_the_next_grasp_is_in_time() -> None:
-    assert noticed_in_time(COURSE, [38], 32) is True
-    assert noticed_in_time(COURSE, [41], 32) is False
-    assert noticed_in_time(COURSE, [5, 38], 32) is True
-    assert noticed_at(COURSE, [5], 32) is None  # of another moment
+    assert in_time(COURSE, [38], 32) is True
+    assert in_time(COURSE, [41], 32) is False
+    assert in_time(COURSE, [5, 38], 32) is True
+    assert at(COURSE, [5], 32) is None  # of another moment
 
 
 def test_a_motion_that_gives_up_has_noticed() -> None:
     course = [*COURSE[:4], said(36, "home", 1), said(39, "home", 1, state=FAILED)]
-    assert noticed_at(course, [], 32) == 36
-    assert noticed_in_time(course, [], 32) is True
+    assert at(course, [], 32) == 36
+    assert in_time(course, [], 32) is True
 
 
 def test_a_new_plan_is_the_latest_way_to_notice() -> None:
     course = [*COURSE, said(90, "pick", 0, "second"), said(99, "place", 0, "second")]
-    assert noticed_at(course, [], 65) == 90
-    assert noticed_in_time(course, [], 65) is True
+    assert at(course, [], 65) == 90
+    assert in_time(course, [], 65) is True
 
 
 def test_the_grasp_from_which_a_block_slips_is_not_the_next_one() -> None:
     course = [*COURSE[:5], said(42, "home", 1, state=FAILED)]
-    assert noticed_in_time(course, [], 32) is False
-    assert noticed_in_time(course, [], 32, passed=1) is True
+    assert in_time(course, [], 32) is False
+    assert in_time(course, [], 32, passed=1) is True
+
+
+def test_what_happens_while_fingers_close_happens_before_the_next_grasp() -> None:
+    closing = 40 - 0.5 * CLOSING / SECOND
+    assert in_time(COURSE, [50], closing) is True
+    assert in_time(COURSE, [50], closing, under_way=True) is False
+    assert in_time(COURSE, [], closing) is False
+    assert in_time(COURSE, [50], 40 - 2 * CLOSING / SECOND) is False
+    assert in_time(COURSE, [50], 60 - 0.5 * CLOSING / SECOND) is None  # there is no next one
 
 
 def test_what_is_carried_is_known_from_before_and_from_what_comes() -> None:
     course = [said(20, "place", 0, object_name="red_box"), said(30, "pick", 1),
               said(40, "place", 1, object_name="blue_box")]  # fmt: skip
-    assert carried_between(course, 22, 28) == {"red_box"}
-    assert carried_between(course, 32, 38) == frozenset()
-    assert carried_between(course, 28, 45) == {"red_box", "blue_box"}
+    assert carried_between(course, 22 * SECOND, 28 * SECOND) == {"red_box"}
+    assert carried_between(course, 32 * SECOND, 38 * SECOND) == frozenset()
+    assert carried_between(course, 28 * SECOND, 45 * SECOND) == {"red_box", "blue_box"}
 
 
 def test_lost_grasps_are_counted_by_plan() -> None:
@@ -76,6 +106,7 @@ def test_lost_grasps_are_counted_by_plan() -> None:
 
 def record(kind: str, verify: str, seed: int, **fields: Any) -> dict[str, Any]:
     base = {"happened": kind != "nothing", "ending": "reached", "simulated_seconds": 20.0}
+    base["in_time_of_any"] = fields.get("in_time")
     return to_json(MomentResult(kind, verify, 0, seed, "goal", **{**base, **fields}))
 
 

@@ -15,6 +15,7 @@ from simulated_arm import (
     HALF_BLOCK,
     OPEN,
     PLAN,
+    FakePlanner,
     two_moves,
 )
 from tamp_runtime.motion_report import ArmPlace, MotionReason, MotionReport, MotionState
@@ -114,6 +115,33 @@ def test_an_obstacle_in_the_way_of_a_block_stops_it_before_it_is_put_down(bench:
     assert joints.fingers.min() < BESIDE, "it holds the block as it stops"
     assert bench.planner.put_downs == [0]
     assert end.held == ""
+
+
+@pytest.mark.parametrize("after", [2.0, None])
+def test_where_an_obstacle_bars_the_way_home_too_the_arm_waits_until_it_is_gone(
+    bench: Bench, after: float | None
+) -> None:
+    """Gone after so long [s], or never: then it is told where the arm is."""
+    way = two_moves().intervals[4]
+    middle = (way.start + way.end) / 2
+    bench.in_the_way = lambda at: "obstacle wall is in the way of the hand" if at > middle else ""
+    for solve in ("solve_way_home", "solve_rise_home"):
+        bench.planner.errors[solve] = InfeasibleError("path", "clearance of hand to wall")
+    barred, free = bench.planner, FakePlanner()
+    stopped: list[float] = []
+
+    def now() -> FakePlanner:
+        if len(bench.arm.sent) > 1 and not stopped:
+            stopped.append(bench.arm.now())
+        gone = after is not None and stopped and bench.arm.now() > stopped[0] + after
+        return free if gone else barred
+
+    bench.planners = iter(now, 0)
+    end = bench.carry_out()
+    assert (end.state, end.reason) == (MotionState.FAILED, MotionReason.OBSTRUCTED)
+    assert end.message.startswith("obstacle wall is in the way of the hand; the arm was stopped; ")
+    assert bench.arm.at_home() is (after is not None)
+    assert end.message.endswith("the arm is home") is (after is not None)
 
 
 @pytest.mark.parametrize(

@@ -153,6 +153,31 @@ def test_fingers_that_have_begun_to_close_open_again(bench: Bench) -> None:
     assert bench.arm.joints.fingers.min() > 0.99 * BESIDE
 
 
+def test_doubt_that_comes_while_fingers_close_opens_them_again(bench: Bench) -> None:
+    sight = [Sight.SEEN]
+    seeing(bench, lambda _move: sight[0], age=0.0)
+
+    def stands(opening: Callable[[float], bool]) -> Callable[[], bool]:
+        def at_the_block() -> bool:
+            away = float(np.abs(bench.arm.joints.arm - SWITCHES[0]).max())
+            return away < 1e-3 and opening(float(bench.arm.joints.fingers.min()))
+
+        return at_the_block
+
+    def doubt() -> None:
+        sight[0] = Sight.DOUBTFUL
+        bench.arm.when(stands(lambda opening: opening > 0.999 * BESIDE), reassure)
+
+    def reassure() -> None:
+        sight[0] = Sight.SEEN
+
+    bench.arm.when(stands(lambda opening: opening < 0.97 * BESIDE), doubt)
+    assert bench.carry_out(WATCHED).state is MotionState.SUCCEEDED
+    assert sight == [Sight.SEEN]  # so they were open again
+    assert len(bench.arm.sent) == 3  # all of it, the opening of the fingers, and the rest
+    assert bench.arm.at_home()
+
+
 def test_only_a_recent_picture_of_this_plan_and_move_counts() -> None:
     sightings = Sightings()
     assert sightings.age("a", 2, 10.0) == float("inf")

@@ -272,7 +272,10 @@ def test_a_block_that_may_just_have_been_taken_is_missed_in_two_frames_only(step
     ]
     assert told == [False, True]
     _, watch, course = course_of(step)
-    assert watch.see(course[4].frame({name: None}, hidden=(0.0,) * 3))  # no hand is near
+    # No hand is near: it may have left with it.
+    assert not watch.see(course[4].frame({name: None}, hidden=(0.0,) * 3))
+    assert watch.sight is not None and watch.sight.sight is Sight.DOUBTFUL
+    assert watch.see(course[5].frame({name: None}, hidden=(0.0,) * 3))
 
 
 def test_a_block_is_missed_below_the_hand_but_not_behind_it() -> None:

@@ -18,7 +18,7 @@ from planner_node.errors import (
 )
 from planner_node.loop import SceneWatch, Sighting
 from planner_node.settings import Settings
-from scene_graph import GraphStatus, Relation
+from scene_graph import GraphStatus, Relation, SceneObject
 
 
 class Watched:
@@ -140,9 +140,25 @@ def two_on_one(sighting: Sighting) -> Sighting:
     return replace(sighting, graph=replace(sighting.graph, relations=relations))
 
 
+def test_a_block_that_lies_before_the_places_is_none_of_the_scene_and_is_told_where_it_is() -> None:
+    watched = Watched()
+    sighting = sighting_of(START, watched.clock.ros_now())
+    lying = SceneObject("pink_box", "pink", "box", (0.66, 0.02, 0.02))
+    graph = replace(sighting.graph, objects=(*sighting.graph.objects, lying))
+    watched.watch.receive(replace(sighting, graph=graph))
+    scene = watched.watch.latest()
+    assert (scene.stacks, scene.names) == (START, ("blue_box", "green_box", "red_box"))
+    with pytest.raises(ObjectLostError) as told:
+        watched.watch.latest(needed=frozenset({"pink_box", "cyan_box"}))
+    assert "cyan_box cannot be seen any more" in str(told.value)
+    assert "pink_box lies before the places, at (0.66, 0.02) m" in str(told.value)
+
+
 def unmentioned(sighting: Sighting) -> Sighting:
     relations = sighting.graph.relations - {Relation("green_box", "up", "stack1")}
-    return replace(sighting, graph=replace(sighting.graph, relations=relations))
+    objects = tuple(replace(item, size=(0.045,) * 3) for item in sighting.graph.objects)
+    graph = replace(sighting.graph, objects=objects, relations=relations)
+    return replace(sighting, graph=graph)
 
 
 def no_places(sighting: Sighting) -> Sighting:

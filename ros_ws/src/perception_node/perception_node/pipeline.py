@@ -26,6 +26,7 @@ from .places.table import table_problem
 from .probability import evidence, load_parameters, probability
 from .segment import (
     RGB,
+    RGBD,
     SEGMENTERS,
     Segmenter,
     Segments,
@@ -34,7 +35,8 @@ from .segment import (
     given_labels,
 )
 from .sight import sight_problem
-from .verdict import Verdict, judge, judge_empty, judge_fallen, with_grain
+from .strays import find_strays, with_strays
+from .verdict import Verdict, judge, judge_empty, judge_fallen, with_grain, with_stray
 from .visual_module.coordinates import Locator
 
 
@@ -161,6 +163,9 @@ class Perception:
         verdict = with_grain(verdict, observation.noise)
         likely = probability(known, self._probability)
         graph = with_fallen(graph, fallen) if fallen else graph
+        if self._volume is not None and config.mask_source == RGBD:
+            strays = find_strays(taken, self._volume, segments)
+            graph, verdict = with_strays(graph, strays), with_stray(verdict, strays)
         return Perceived(graph, *verdict, segments, likely, known)
 
     def _seen(self, observation: Observation, segments: Segments, places: Places) -> Seen:

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from scene_graph import GraphStatus, SceneGraph, base_name, is_hidden
+from scene_graph import GraphStatus, SceneGraph, SceneObject, base_name, is_hidden
 
 from .blocks import Blocks, MeasuredBlock
 from .config import PerceptionConfig, StabilityLimits
@@ -154,6 +154,14 @@ def occluded(occlusion: Occlusion, max_hidden: float) -> str:
         f"{base_name(worst)}: a hand, a tool, or a block that stands on no place; look again when "
         "it is gone"
     )
+
+
+def with_stray(verdict: Verdict, strays: Sequence[SceneObject]) -> Verdict:
+    """The verdict, with what lies before the places, and may be what hides them."""
+    if verdict.status is not GraphStatus.OCCLUDED or not strays:
+        return verdict
+    names = ", ".join(sorted(item.name for item in strays))
+    return verdict._replace(message=f"{verdict.message}; before the places lies {names}")
 
 
 def instability(

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar
 
 
@@ -54,16 +54,31 @@ class AmbiguousObjectError(PlannerError):
 
 
 class ObjectLostError(UnknownObjectError):
-    """Objects of a goal that was understood before are no longer seen."""
+    """Objects of a goal that was understood before are no longer seen, or lie before the places.
+
+    Args:
+        lying: where blocks lie before the places, by name [m].
+    """
 
     module = "perception"
 
-    def __init__(self, missing: Sequence[str], known: Sequence[str]) -> None:
-        super().__init__(
-            missing[0],
-            known,
-            f"{', '.join(missing)} cannot be seen any more; the scene has {', '.join(known)}",
-        )
+    def __init__(
+        self,
+        missing: Sequence[str],
+        known: Sequence[str],
+        lying: Mapping[str, tuple[float, float, float]] | None = None,
+    ) -> None:
+        there = lying or {}
+        gone = [name for name in missing if name not in there]
+        told = [
+            f"{name} lies before the places, at ({x:.2f}, {y:.2f}) m: put it on a place by hand, "
+            "and ask again"
+            for name, (x, y, _) in sorted(there.items())
+            if name in missing
+        ]
+        if gone:
+            told.insert(0, f"{', '.join(gone)} cannot be seen any more")
+        super().__init__(missing[0], known, f"{'; '.join(told)}; the scene has {', '.join(known)}")
 
 
 class ContradictoryGoalError(PlannerError):

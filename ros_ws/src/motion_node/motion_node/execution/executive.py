@@ -35,6 +35,8 @@ from .settings import ExecutionSettings
 
 #: How long an arm that has arrived may take to come to rest before that is said [s].
 _SETTLING_SECONDS: Final = 3.0
+#: For so long an arm that finds no way home among obstacles waits for others to be told [s].
+OBSTACLES_PASS: Final = 10.0
 
 #: Planner, plan, its motion, what is under way, from which of its times on, scene -> the rest.
 CorrectFirst = Callable[[Any, Plan, Motion, Motion, float, SceneGraph], Motion]
@@ -202,9 +204,9 @@ class Executive:
                 raise
             try:
                 if error.reason is MotionReason.OBSTRUCTED:
-                    self._stop_moving()
-                    planner = self._wait_for_planner()  # among the obstacles of now
-                recovered = self._recover(run.motion, planner, str(error))
+                    recovered = self._recover_obstructed(run.motion, str(error), stop)
+                else:
+                    recovered = self._recover(run.motion, planner, str(error))
             except ExecutionError as second:
                 raise ExecutionError(error.reason, f"{error}; {second}") from error
             raise ExecutionError(error.reason, f"{error}; {recovered.sentence}") from error
@@ -256,6 +258,26 @@ class Executive:
         )
         self._stop_moving()
         return self._bring_home(motion, planner, f"{why}; ", in_order=True)
+
+    def _recover_obstructed(self, motion: Motion, why: str, stop: threading.Event) -> Recovered:
+        """The same among the obstacles of now; where there is no way, among others that come soon.
+
+        What came into the way of the arm is often a person's, and gone in a moment.
+        """
+        self._stop_moving()
+        deadline = self._arm.now() + OBSTACLES_PASS
+        while True:
+            planner = self._wait_for_planner()
+            try:
+                return self._recover(motion, planner, why)
+            except ExecutionError as error:
+                if error.reason is not MotionReason.INFEASIBLE:
+                    raise
+                for _ in self._follower.states():
+                    if self._planner() not in (planner, None):
+                        break
+                    if stop.is_set() or self._arm.closed or self._arm.now() > deadline:
+                        raise
 
     def _stop_moving(self) -> None:
         if self._follower.under_way:

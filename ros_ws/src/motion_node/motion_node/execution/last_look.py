@@ -3,7 +3,8 @@
 
 Of a plan that is watched the planner tells picture by picture what it sees. Most often it has just
 told it when the hand arrives, and nothing is waited for. Where it has not, or what it saw last is
-doubtful, the hand stands at the switch with open fingers.
+doubtful, the hand stands at the switch with open fingers. Fingers that are closing open again when
+a picture brings doubt: as long as nothing is lifted nothing is lost.
 """
 
 from __future__ import annotations
@@ -86,6 +87,12 @@ class Sightings:
             return False
         return hidden.stamp > max(since, doubt.stamp if doubt is not None else since)
 
+    def is_doubtful(self, plan_id: str) -> bool:
+        """Whether the newest picture of a plan is doubtful."""
+        with self._lock:
+            newest = max(self._newest.values(), key=lambda item: item.stamp, default=None)
+        return newest is not None and (newest.plan_id, newest.sight) == (plan_id, Sight.DOUBTFUL)
+
     def moved(self, plan_id: str) -> tuple[SceneObject, ...]:
         """The blocks of a plan that were moved a little since it was made."""
         with self._lock:
@@ -142,8 +149,10 @@ class LastLook:
         if not state.stamped:
             return False
         grasp, time = grasp_ahead(trajectory, follower.time), follower.time
-        if grasp is None or time < grasp.start - DECIDES or grasp.phase.move == self._closing:
+        if grasp is None or time < grasp.start - DECIDES:
             return False
+        if grasp.phase.move == self._closing:
+            return time < grasp.end - follower.LEAD and self._sightings.is_doubtful(self._plan_id)
         allowed = self.allows(grasp.phase.move, state)
         if allowed and time >= grasp.start:
             self.close(grasp.phase.move)

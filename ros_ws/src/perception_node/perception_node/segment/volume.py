@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -17,6 +17,10 @@ Array = NDArray[np.float64]
 MARGIN: Final = 0.12
 #: What stands further than this beside the row of places is none of its blocks [m].
 NEAR: Final = 0.095
+#: What fell off a tower, or was pushed off its place, lies up to this far from the row [m], ...
+FALLEN: Final = 0.21
+#: ... and no higher than this over the table [m].
+LYING: Final = 0.09
 
 
 @dataclass(frozen=True)
@@ -26,11 +30,13 @@ class Volume:
     Attributes:
         low, high: opposite corners, shape (3,) [m].
         feet: the places, in order, shape (m, 2) [m].
+        near: what stands further than this beside the row is none of its blocks [m].
     """
 
     low: Array
     high: Array
     feet: Array
+    near: float = NEAR
 
     @classmethod
     def over(cls, feet: Array, height: float) -> Volume:
@@ -60,7 +66,21 @@ class Volume:
         share = ((points[:, None] - begin) * along).sum(axis=-1) / squares
         nearest = begin + np.clip(share, 0.0, 1.0)[..., None] * along
         distances = np.linalg.norm(points[:, None] - nearest, axis=-1)
-        return np.asarray(distances.min(axis=1) < NEAR)
+        return np.asarray(distances.min(axis=1) < self.near)
+
+    def before(self, camera: PinholeCamera) -> Volume:
+        """What is on the table beyond it on the camera's side, where no block of the row is."""
+        toward = camera.position_world[:2] - self.feet.mean(axis=0)
+        axis = int(np.argmax(np.abs(toward)))
+        low, high = self.low.copy(), self.high.copy()
+        high[2] = self.floor + LYING
+        if toward[axis] > 0.0:
+            edge = self.feet[:, axis].max()
+            low[axis], high[axis] = edge + NEAR, edge + FALLEN
+        else:
+            edge = self.feet[:, axis].min()
+            low[axis], high[axis] = edge - FALLEN, edge - NEAR
+        return replace(self, low=low, high=high, near=FALLEN)
 
     def corners(self) -> Array:
         """All eight, shape (8, 3) [m]."""

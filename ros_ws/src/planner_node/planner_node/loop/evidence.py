@@ -190,10 +190,11 @@ class Evidence:
         if item is None or lies:
             # What lies may be a part of the arm that looks like it: where it was to be tells.
             if all(_is_seen(rest, graph.places) for rest in options):
-                # Something else in its place may be it, by another name. Where the hand is, it may
-                # have been taken, and the report of that be on its way.
+                # Something else in its place may be it, by another name. What the hand is to take
+                # it may have taken, and the report of that be on its way; by the next frame of a
+                # machine that has a lot to do it has come. Meanwhile no fingers close.
                 doubt = any(_is_at(other, rest) for other in graph.objects for rest in options)
-                held = name == about_to_rise and not _is_clear(options[-1], graph.places)
+                held = name == about_to_rise
                 kind, where = Kind.UNSEEN, None
                 if item is not None:
                     kind, where = Kind.ELSEWHERE, item.position_world

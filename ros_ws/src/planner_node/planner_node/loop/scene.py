@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 from scene_graph import (
+    UP,
     GraphStatus,
     Rows,
     SceneGraph,
@@ -17,6 +19,8 @@ from scene_graph import (
 )
 
 from ..errors import NotConfidentError
+
+Point = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -48,12 +52,14 @@ class Scene:
         graph, stamp, frame_id: as in :class:`Sighting`.
         stacks: every object of the graph stands on one; what stands for hidden blocks among them,
             see :mod:`scene_graph.hidden`.
+        lying: where blocks lie that are before the places, and in nobody's way, by name [m].
     """
 
     graph: SceneGraph
     stacks: Stacks
     stamp: int = 0
     frame_id: str = ""
+    lying: Mapping[str, Point] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -106,6 +112,13 @@ def scene_in(sighting: Sighting, min_confidence: float = 0.0, may_hide: bool = F
         )
     if sighting.defect:
         raise NotConfidentError(f"the scene graph contradicts itself: {sighting.defect}")
+    # Of what lies no size is known. Perception would not be confident if it lay among the places.
+    standing = {item.subject for item in graph.relations if item.predicate == UP}
+    lying = {item.name: item.position_world for item in graph.objects
+             if not any(item.size) and item.name not in standing}  # fmt: skip
+    if lying:
+        others = tuple(item for item in graph.objects if item.name not in lying)
+        graph = replace(graph, objects=others)
     try:
         stacks = graph.stacks()
     except SceneGraphError as error:
@@ -118,4 +131,4 @@ def scene_in(sighting: Sighting, min_confidence: float = 0.0, may_hide: bool = F
         raise NotConfidentError(
             f"the scene graph is incomplete: objects and relations differ: {odd}"
         )
-    return Scene(graph, stacks, sighting.stamp, sighting.frame_id)
+    return Scene(graph, stacks, sighting.stamp, sighting.frame_id, lying)

@@ -76,7 +76,7 @@ class SceneWatch:
         scene = recall(scene_in(sighting, self._settings.min_confidence, may_hide=True))
         missing = sorted(needed - set(scene.names))
         if missing and not scene.hidden:
-            raise ObjectLostError(missing, scene.names)
+            raise ObjectLostError(missing, scene.names, scene.lying)
         return scene
 
     def wait(
