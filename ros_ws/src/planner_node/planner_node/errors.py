@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
+
+if TYPE_CHECKING:
+    from .loop.readings import Doubt
 
 
 class PlannerError(Exception):
@@ -158,6 +161,17 @@ class NotConfidentError(PlannerError):
 
     status = "NOT_CONFIDENT"
     module = "perception"
+
+
+class NeedsAnswerError(PlannerError):
+    """The goal means other things in other readings of the scene; the message asks about ``doubt``."""
+
+    status = "NEEDS_ANSWER"
+    module = "perception"
+
+    def __init__(self, doubt: Doubt, question: str) -> None:
+        super().__init__(question)
+        self.doubt = doubt
 
 
 class GoalImageError(PlannerError):

@@ -47,6 +47,7 @@ class Status(IntEnum):
     CONFLICT = 14
     INVALID_PLAN = 15
     ENGINE_FAILED = 16
+    NEEDS_ANSWER = 17
     MOTION_FAILED = 20
     MOTION_SILENT = 21
     TOO_MANY_REPLANS = 22
@@ -77,6 +78,7 @@ class Outcome:
 
     Attributes:
         message: a sentence for people.
+        answers: what can be answered to the question that the message asks, if it does.
         module: the part of the system that could not go on: perception, planner, motion or "".
         moves_planned: of the first plan; ``moves_executed``: over all plans.
         causes: why plans were given up, failed or were made anew, and what differed from what was
@@ -89,6 +91,7 @@ class Outcome:
 
     status: Status = Status.SUCCESS
     message: str = ""
+    answers: tuple[str, ...] = ()
     module: str = ""
     moves_planned: int = 0
     moves_executed: int = 0
