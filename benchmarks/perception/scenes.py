@@ -151,11 +151,11 @@ BESIDE: Final[Mapping[str, tuple[str, ...]]] = {
 }
 
 
-def between_colors(most: int = 1) -> Callable[[int], Drawn]:
+def between_colors(most: int = 2) -> Callable[[int], Drawn]:
     """Four to six blocks; the paint of up to ``most`` of them came out between two colours.
 
-    A block is called by the colour that its paint was to have. The other colour has 20 to 60 % of
-    it, so that it may look more like that one.
+    A block is called by the colour that its paint was to have. The other colour has 20 to 50 % of
+    it, which may look more like that one.
     """
 
     def draw(number: int) -> Drawn:
@@ -166,7 +166,7 @@ def between_colors(most: int = 1) -> Callable[[int], Drawn]:
         named: dict[str, Any] = {}
         for color in mixed:
             other = str(rng.choice(BESIDE[color]))
-            share = rng.uniform(0.2, 0.6)
+            share = rng.uniform(0.2, 0.5)
             paint = (1.0 - share) * np.array(COLORS[color]) + share * np.array(COLORS[other])
             named[object_name(color, BOX)] = {"paint": [round(float(part), 3) for part in paint]}
         layout = random_arrangement([object_name(color, BOX) for color in chosen], rng)

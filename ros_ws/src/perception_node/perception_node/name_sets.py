@@ -2,11 +2,11 @@
 """Sets of colours that hold the right ones in a stated share of scenes: split conformal prediction.
 
 How badly the colours c of a scene's N blocks fit is s(c) = max_i gap_i(c_i), the gaps those of
-:class:`.light.ColorFit`. With s of the right colours in n scenes of a kind, drawn for this alone, and
-q the ⌈(n + 1)·coverage⌉-th smallest of them, the colours of another scene of the kind have s <= q in
-at least that share of all scenes: the set is the product of {c : gap_i(c) <= q} over the blocks
-(Vovk et al.; Papadopoulos et al. 2002). A scene in which all colours are certain has one set of
-names, and s is infinite where these are wrong.
+:class:`.light.ColorFit`. With s of the right colours in n scenes of a kind, drawn for this alone,
+and q the ⌈(n + 1)·coverage⌉-th smallest of them, the colours of another scene of the kind have
+s <= q in at least that share of all scenes: the set is the product of {c : gap_i(c) <= q} over the
+blocks (Papadopoulos et al. 2002). A scene in which all colours are certain has one reading, and s is
+infinite where that is wrong.
 """
 
 from __future__ import annotations
@@ -64,32 +64,46 @@ def conformal_threshold(scores: Sequence[float], coverage: float) -> float:
     return sorted(scores)[rank - 1] if rank <= len(scores) else math.inf
 
 
+def in_doubt(fit: ColorFit, colors: Array, table: Array | None) -> NDArray[np.bool_] | None:
+    """Which of N blocks are in doubt while nothing else is, shape (N,).
+
+    Args:
+        fit: of ``colors``.
+        colors, table: see :func:`.light.explain_colors`.
+
+    Returns:
+        None where the doubt is not about few blocks between known colours: the others have to be
+        certain of theirs without these as well, for in a light that nobody knows all are wrong.
+    """
+    sure = fit.known & (fit.margins >= MIN_MARGIN)
+    if (~sure).sum() > MOST_BLOCKS or sure.sum() < LEAST_CERTAIN:
+        return None
+    if (fit.distances[~sure] > MAX_BETWEEN).any():
+        return None
+    rest = explain_colors(colors[sure], table)
+    named = tuple(name for name, certain in zip(fit.names, sure) if certain)
+    if rest.names != named or not (rest.known & (rest.margins >= MIN_MARGIN)).all():
+        return None
+    return ~sure
+
+
 def possible_colors(
     fit: ColorFit, colors: Array, table: Array | None, threshold: float
 ) -> tuple[tuple[str, ...], ...] | None:
     """The colours that each of N blocks may have, the likeliest first; one where it is certain.
 
     Args:
-        fit: of ``colors``.
-        colors, table: see :func:`.light.explain_colors`.
+        fit, colors, table: see :func:`in_doubt`.
         threshold: q [ΔE].
 
     Returns:
-        None where the doubt is not about few colours of few blocks: the others would have to be
-        certain of theirs without these as well, for in a light that nobody knows they are all wrong.
+        None where the doubt is not about few colours of few blocks.
     """
-    sure = fit.known & (fit.margins >= MIN_MARGIN)
-    doubtful = np.flatnonzero(~sure)
-    if len(doubtful) > MOST_BLOCKS or sure.sum() < LEAST_CERTAIN:
-        return None
-    if (fit.distances[doubtful] > MAX_BETWEEN).any():
-        return None
-    rest = explain_colors(colors[sure], table)
-    named = tuple(name for name, certain in zip(fit.names, sure) if certain)
-    if rest.names != named or not (rest.known & (rest.margins >= MIN_MARGIN)).all():
+    doubtful = in_doubt(fit, colors, table)
+    if doubtful is None:
         return None
     sets = [(name,) for name in fit.names]
-    for index in doubtful:
+    for index in np.flatnonzero(doubtful):
         order = np.argsort(fit.gaps[index], kind="stable")
         # Two at least: what is not certain is never told as if it were.
         count = max(2, int((fit.gaps[index] <= threshold).sum()))

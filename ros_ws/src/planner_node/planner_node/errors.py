@@ -164,7 +164,7 @@ class NotConfidentError(PlannerError):
 
 
 class NeedsAnswerError(PlannerError):
-    """The goal means other things in other readings of the scene; the message asks about ``doubt``."""
+    """What the goal means depends on ``doubt``, about which the message asks."""
 
     status = "NEEDS_ANSWER"
     module = "perception"

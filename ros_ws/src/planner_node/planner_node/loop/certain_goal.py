@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a goal means where colours are in doubt: the same in all readings, or what has to be asked."""
+"""What a goal means where colours are in doubt: the same in all readings, or what is asked."""
 
 from __future__ import annotations
 
@@ -27,11 +27,10 @@ Meaning = Goal | AmbiguousObjectError | GoalImageError | InvalidGoalError | Unkn
 
 
 def certain_goal(resolve: ResolveGoal, scene: Scene) -> Goal:
-    """The goal whose fulfilment fulfils what is asked for in every reading of the scene.
+    """The goal that fulfils what is wanted in every reading of the scene, in the scene's names.
 
-    Where it means the same in all of them, that is it. Where it does not, it is all that it means at
-    once: "every red box on blue" holds if a box that may be red is there, too. Blocks have the names
-    of the scene.
+    Where it means the same in all of them, that is it. Where it does not, it is all that it means
+    at once: "every red box in stack0" holds if a box that may be red is there, too.
 
     Raises:
         NeedsAnswerError: that excludes itself, or the goal makes no sense in some readings.
@@ -127,7 +126,9 @@ def _meaning(resolve: ResolveGoal, scene: Scene, reading: Mapping[str, str]) -> 
         replace(item, relations=tuple(one.renamed(back) for one in item.relations))
         for item in goal.counts
     )
-    return replace(goal, relations=tuple(one.renamed(back) for one in goal.relations), counts=counts)
+    return replace(
+        goal, relations=tuple(one.renamed(back) for one in goal.relations), counts=counts
+    )
 
 
 def _all_of(goals: Sequence[Goal]) -> Goal:
@@ -148,9 +149,7 @@ def _content(meaning: Meaning) -> object:
     return frozenset(meaning.relations), counts
 
 
-def _matters_most(
-    doubts: Sequence[Doubt], meanings: Mapping[tuple[str, ...], Meaning]
-) -> Doubt:
+def _matters_most(doubts: Sequence[Doubt], meanings: Mapping[tuple[str, ...], Meaning]) -> Doubt:
     """The block about whose colour alone the meaning depends in the most cases."""
 
     def weight(index: int) -> int:

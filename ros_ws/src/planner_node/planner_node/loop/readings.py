@@ -86,7 +86,7 @@ class Readings:
         self._answered[name] = color
 
     def named(self, sighting: Sighting) -> Sighting:
-        """The same with the names that its blocks in doubt have had; what is sure can be planned on."""
+        """The same with the names that its blocks in doubt have had, to be planned on."""
         if sighting.stamp < self._stamp:  # the clock went back: another scene
             self._known, self._answered, self._certain = {}, {}, frozenset()
         self._stamp = sighting.stamp
