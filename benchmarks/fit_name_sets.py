@@ -57,7 +57,6 @@ def main() -> int:
         "threshold": round(threshold, 3),
     }
     print(json.dumps(content, indent=1))
-    print("quantiles", np.quantile(scores, [0.5, 0.8, 0.9, 0.95, 0.97, 0.98, 0.99]).round(2))
     if math.isinf(threshold):
         print("nothing is written: no threshold reaches this coverage")
         return 1

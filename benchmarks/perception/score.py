@@ -30,9 +30,10 @@ from perception_node import (
     PerceptionConfig,
     Segmenter,
 )
+from perception_node.name_sets import load_name_sets
 from perception_node.segment import RGB
 from perception_node.visual_module.coordinates import Locator
-from scene_graph import UNKNOWN, GraphStatus, SceneGraph, SceneObject
+from scene_graph import UNKNOWN, GraphStatus, Relation, SceneGraph, SceneObject, object_name
 from sim_node import Frame, World, random_arrangement, sense, true_scene_graph
 
 #: Every set is held to no more than this share of graphs that are accepted and wrong.
@@ -62,6 +63,8 @@ class Answer:
         probability, evidence: of :class:`Perceived`.
         baselines: whether the graph is right with each of :data:`BASELINES`.
         hides: whether it says that blocks hide others.
+        readings: how many graphs it may be, if it is accepted or in doubt about some names.
+        covered: whether the right one is among them.
     """
 
     seed: int
@@ -77,6 +80,8 @@ class Answer:
     probability: float = 0.0
     evidence: tuple[float, ...] = ()
     hides: bool = False
+    readings: int = 0
+    covered: bool = False
 
 
 def answer_of(drawn: Drawn, item: PictureSet, locator: Locator, world: World) -> Answer:
@@ -129,6 +134,8 @@ def answer_to(
     ]
     hides = seen.status is GraphStatus.HIDDEN
     confident = hides or seen.status is GraphStatus.CONFIDENT
+    doubtful = seen.status is GraphStatus.DOUBTFUL
+    readings = _readings(seen.graph) if doubtful else [seen.graph.relations]
     answer = Answer(
         seed,
         seen.graph.relations == truth.relations,
@@ -142,6 +149,8 @@ def answer_to(
         probability=seen.probability,
         evidence=seen.evidence,
         hides=hides,
+        readings=len(readings) if confident or doubtful else 0,
+        covered=truth.relations in readings,
     )
     return answer, seen
 
@@ -197,6 +206,16 @@ def _named(
     return tuple((*block, *found.get(label, ("", ""))) for label, block in blocks.items())
 
 
+def _readings(graph: SceneGraph) -> list[frozenset[Relation]]:
+    """The relations of each graph that a doubtful one stands for."""
+    named = [[object_name(color, item.shape) for color in item.readings] for item in graph.objects]
+    return [
+        graph.renamed(dict(zip(graph.names, names))).relations
+        for names in itertools.product(*named)
+        if len(set(names)) == len(names)
+    ]
+
+
 def _errors(seen: SceneGraph, truth: SceneGraph) -> tuple[tuple[float, float, float], ...]:
     true = {block.name: block for block in truth.objects}
     return tuple(_error(block, true[block.name]) for block in seen.objects if block.name in true)
@@ -240,6 +259,7 @@ def rows_of(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
             sum(not answer.confident and bool(answer.message) for answer in answers)
             / max(1, refused), "", refused, None, "== 1.0" if refused else None),
         *_name_rows(item, answers),
+        *_reading_rows(item, answers),
         Row(item.what, "IoU, mean", float(np.mean(iou)) if iou else 0.0, "", len(iou), None,
             None if item.iou is None else f">= {item.iou}", item.thesis[1]),
         Row(item.what, "picture to graph, median", float(np.median(seconds)), "ms", n,
@@ -302,6 +322,30 @@ def _name_rows(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
                 f">= {item.shapes}", 0.97)
         )  # fmt: skip
     return rows
+
+
+def _reading_rows(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
+    """What is published as one graph, or as the few that it may be."""
+    if not item.between:
+        return []
+    told = [answer for answer in answers if answer.readings]
+    n, sizes = len(told), np.array([answer.readings for answer in told])
+    covered, single = sum(answer.covered for answer in told), int((sizes == 1).sum())
+    doubtful = n - single
+    right = sum(answer.covered for answer in told if answer.readings > 1)
+    return [
+        Row(item.what, "one graph or a set published", n / len(answers), "", len(answers),
+            wilson_interval(n, len(answers))),
+        Row(item.what, "right one among the published", covered / n, "", n,
+            wilson_interval(covered, n), f">= {load_name_sets().coverage}",
+            note="the stated coverage, by conformal prediction on seeds below 1000"),
+        Row(item.what, "right one among the published, of sets of two or more",
+            right / max(1, doubtful), "", doubtful, wilson_interval(right, doubtful)),
+        Row(item.what, "graphs of a set, mean", float(sizes.mean()), "", n,
+            (float(sizes.min()), float(sizes.max()))),
+        Row(item.what, "single graphs among the published", single / n, "", n,
+            wilson_interval(single, n)),
+    ]  # fmt: skip
 
 
 def _error_row(

@@ -225,16 +225,19 @@ class PlannerNode(Node):
         """A plan to the goal, one given, or where blocks hide others one that uncovers them."""
         if not scene.hidden:
             look = functools.partial(self._scenes.latest, self._motion.last_end)
-            answers = Answers(request.answer, self._scenes.answer, look)
+            answers = Answers(request.answer, self._scenes.answer, look, self._search)
             scene, goal = answers.goal_in(scene, resolve)
             if given := request.plan.strip():
                 return scene, goal, given_plan_in(scene, given, goal, self._settings)
-            return scene, goal, plan_in(scene, goal, self._settings, self._is_shut_down)
+            return scene, goal, self._search(scene, goal)
         meant = meaning(resolve, scene)
         if meant is not None and decided(meant, scene) and meant.holds(scene.stacks):
-            return scene, meant, plan_in(scene, meant, self._settings, self._is_shut_down)
+            return scene, meant, self._search(scene, meant)
         found = uncover_in(scene, meant, self._settings, self._is_shut_down)
         return scene, meant or Goal(()), found
+
+    def _search(self, scene: Scene, goal: Goal) -> SearchResult:
+        return plan_in(scene, goal, self._settings, self._is_shut_down)
 
     def _on_achieve_goal(self, handle: ServerGoalHandle) -> AchieveGoal.Result:
         request, feedback = handle.request, FeedbackWriter()

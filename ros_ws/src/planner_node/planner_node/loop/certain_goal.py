@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -16,8 +17,8 @@ from ..errors import (
     InvalidGoalError,
     NeedsAnswerError,
     UnknownObjectError,
+    UnreachableError,
 )
-from ..goals.contradictions import check_contradictions
 from ..goals.goal import Count, Goal, ResolveGoal
 from .readings import Doubt, doubts_in, readings_of, renamed
 from .scene import Scene
@@ -26,14 +27,17 @@ from .scene import Scene
 Meaning = Goal | AmbiguousObjectError | GoalImageError | InvalidGoalError | UnknownObjectError
 
 
-def certain_goal(resolve: ResolveGoal, scene: Scene) -> Goal:
+def certain_goal(resolve: ResolveGoal, scene: Scene, plan: Callable[[Scene, Goal], object]) -> Goal:
     """The goal that fulfils what is wanted in every reading of the scene, in the scene's names.
 
     Where it means the same in all of them, that is it. Where it does not, it is all that it means
     at once: "every red box in stack0" holds if a box that may be red is there, too.
 
+    Args:
+        plan: tries whether that can be.
+
     Raises:
-        NeedsAnswerError: that excludes itself, or the goal makes no sense in some readings.
+        NeedsAnswerError: it cannot, or the goal makes no sense in some readings.
         PlannerError: it makes no sense in any: as ``resolve``.
     """
     doubts = doubts_in(scene.graph)
@@ -46,13 +50,12 @@ def certain_goal(resolve: ResolveGoal, scene: Scene) -> Goal:
         assert not isinstance(meanings[0], Goal)
         raise meanings[0]
     if len(goals) == len(meanings):
+        if len({*map(_content, goals)}) == 1:
+            return goals[0]
         goal = _all_of(goals)
-        try:
-            check_contradictions(goal, len(scene.stacks))
+        with contextlib.suppress(ContradictoryGoalError, UnreachableError):
+            plan(scene, goal)
             return goal
-        except ContradictoryGoalError:
-            if len({*map(_content, goals)}) == 1:
-                raise
     colors = [tuple(reading.values()) for reading in readings]
     raise question(scene, _matters_most(doubts, dict(zip(colors, meanings))))
 
@@ -72,7 +75,11 @@ class Answers:
     """What was answered beforehand, and a goal found by its help."""
 
     def __init__(
-        self, text: str, settle: Callable[[Doubt, str], None], look: Callable[[], Scene]
+        self,
+        text: str,
+        settle: Callable[[Doubt, str], None],
+        look: Callable[[], Scene],
+        plan: Callable[[Scene, Goal], object],
     ) -> None:
         """See :class:`Answers`.
 
@@ -80,10 +87,12 @@ class Answers:
             text: the answers in the order of the questions, with commas between.
             settle: takes it that a block has a colour.
             look: the scene thereafter.
+            plan: see :func:`certain_goal`.
         """
         self._left = [part for part in text.split(",") if part.strip()]
         self._settle = settle
         self._look = look
+        self._plan = plan
 
     def goal_in(self, scene: Scene, resolve: ResolveGoal) -> tuple[Scene, Goal]:
         """The scene as it is with the answers that are needed, and the goal in it.
@@ -94,7 +103,7 @@ class Answers:
         """
         while True:
             try:
-                return scene, certain_goal(resolve, scene)
+                return scene, certain_goal(resolve, scene, self._plan)
             except NeedsAnswerError as error:
                 if not self._left:
                     raise

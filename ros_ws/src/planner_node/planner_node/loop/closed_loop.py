@@ -91,7 +91,7 @@ class ClosedLoop:
         )
         self._patience, self._remarks = 1, list[str]()
         self._possible = PossibleMoves(settings, cancelled)
-        self._answers = Answers(answer, scenes.answer, self._look_again)
+        self._answers = Answers(answer, scenes.answer, self._look_again, self._possible.plan)
         self._requested = scenes.now()
         self.outcome = Outcome()
 
