@@ -4,34 +4,23 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from loop_bench import sighting_of
+from loop_bench import in_doubt, sighting_of
 
 from planner_node.errors import AmbiguousObjectError, NeedsAnswerError, UnknownObjectError
 from planner_node.goals import Goal, ResolveGoal, parse_goal, resolve_goal
 from planner_node.loop import Answers, Scene, certain_goal, plan_in, scene_in
-from planner_node.loop.readings import doubts_in, readings_of, renamed
+from planner_node.loop.readings import Readings, doubts_in, readings_of, renamed
 from planner_node.search import SearchResult
 from planner_node.settings import Settings
-from scene_graph import ONE_ROW, SceneGraph, Stacks, all_moves, apply_move
-
-
-def in_doubt(graph: SceneGraph, **alternatives: str) -> SceneGraph:
-    """With other colours that blocks may have: ``red_box="orange brown"``."""
-    objects = tuple(
-        replace(item, alternatives=tuple(alternatives.get(item.name, "").split()))
-        for item in graph.objects
-    )
-    return replace(graph, objects=objects)
+from scene_graph import ONE_ROW, Stacks, all_moves, apply_move
 
 
 def scene_of(stacks: Stacks, **alternatives: str) -> Scene:
-    sighting = sighting_of(stacks)
-    return scene_in(replace(sighting, graph=in_doubt(sighting.graph, **alternatives)))
+    return scene_in(Readings().named(in_doubt(sighting_of(stacks), **alternatives)))
 
 
 def reading_of(text: str) -> ResolveGoal:

@@ -5,7 +5,7 @@ How badly the colours c of a scene's N blocks fit is s(c) = max_i gap_i(c_i), th
 :class:`.light.ColorFit`. With s of the right colours in n scenes of a kind, drawn for this alone,
 and q the ⌈(n + 1)·coverage⌉-th smallest of them, the colours of another scene of the kind have
 s <= q in at least that share of all scenes: the set is the product of {c : gap_i(c) <= q} over the
-blocks (Papadopoulos et al. 2002). A scene in which all colours are certain has one reading, and s is
+blocks (Papadopoulos et al. 2002). Where all colours are certain there is one reading, and s is
 infinite where that is wrong.
 """
 
