@@ -268,7 +268,7 @@ SETS: Final = (
     _lit("cool", red=(0.75, 0.92), blue=(1.08, 1.25)),
     _lit("dim", exposure=(0.4, 0.7)),
     PictureSet("between", "4-6 blocks, paint of one or two between two colours",
-               between_colors(), between=True,
+               between_colors(), between=True, told=False,
                note="20 to 50 % of another colour; which name is right is in doubt"),
     PictureSet("shapes", "boxes and cylinders of colours not seen, with depth",
                colored(UNSEEN_COLORS, shapes=("box", "cylinder")), 500, shapes=0.99,

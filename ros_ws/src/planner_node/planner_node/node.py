@@ -263,9 +263,7 @@ class PlannerNode(Node):
             with self._claimed(claim, motion.check_own):
                 outcome = loop.run(read, request.plan)
         except BusyError as error:
-            outcome = Outcome(
-                Status[error.status], str(error), module=error.module, motion=motion.newest
-            )
+            outcome = Outcome(Status[error.status], str(error), error.module, motion=motion.newest)
         except Exception as error:
             message = self._internal_error(error)
             outcome = loop.give_up(Status.INTERNAL_ERROR, message, "planner")

@@ -78,7 +78,6 @@ class Outcome:
 
     Attributes:
         message: a sentence for people.
-        answers: what can be answered to the question that the message asks, if it does.
         module: the part of the system that could not go on: perception, planner, motion or "".
         moves_planned: of the first plan; ``moves_executed``: over all plans.
         causes: why plans were given up, failed or were made anew, and what differed from what was
@@ -87,11 +86,11 @@ class Outcome:
         motion: the last report on a plan, with where the arm is now and what it holds.
         perceive_seconds, plan_seconds, motion_seconds, execute_seconds: wall times, summed [s];
             motion is the optimisation.
+        answers: what can be answered to the question that the message asks, if it does.
     """
 
     status: Status = Status.SUCCESS
     message: str = ""
-    answers: tuple[str, ...] = ()
     module: str = ""
     moves_planned: int = 0
     moves_executed: int = 0
@@ -104,3 +103,4 @@ class Outcome:
     plan_seconds: float = 0.0
     motion_seconds: float = 0.0
     execute_seconds: float = 0.0
+    answers: tuple[str, ...] = ()
