@@ -19,6 +19,7 @@ from results_file import Row, wilson_interval
 from perception.color_clusters import find_by_color
 from perception.damages import Shot
 from perception.hidden_truth import is_partly_right
+from perception.readings import reading_rows, relations_of
 from perception.scenes import Drawn
 from perception.sets import PictureSet
 from perception.views import view_of
@@ -30,10 +31,9 @@ from perception_node import (
     PerceptionConfig,
     Segmenter,
 )
-from perception_node.name_sets import load_name_sets
 from perception_node.segment import RGB
 from perception_node.visual_module.coordinates import Locator
-from scene_graph import UNKNOWN, GraphStatus, Relation, SceneGraph, SceneObject, object_name
+from scene_graph import UNKNOWN, GraphStatus, SceneGraph, SceneObject
 from sim_node import Frame, World, random_arrangement, sense, true_scene_graph
 
 #: Every set is held to no more than this share of graphs that are accepted and wrong.
@@ -135,7 +135,7 @@ def answer_to(
     hides = seen.status is GraphStatus.HIDDEN
     confident = hides or seen.status is GraphStatus.CONFIDENT
     doubtful = seen.status is GraphStatus.DOUBTFUL
-    readings = _readings(seen.graph) if doubtful else [seen.graph.relations]
+    readings = relations_of(seen.graph) if doubtful else [seen.graph.relations]
     answer = Answer(
         seed,
         seen.graph.relations == truth.relations,
@@ -206,16 +206,6 @@ def _named(
     return tuple((*block, *found.get(label, ("", ""))) for label, block in blocks.items())
 
 
-def _readings(graph: SceneGraph) -> list[frozenset[Relation]]:
-    """The relations of each graph that a doubtful one stands for."""
-    named = [[object_name(color, item.shape) for color in item.readings] for item in graph.objects]
-    return [
-        graph.renamed(dict(zip(graph.names, names))).relations
-        for names in itertools.product(*named)
-        if len(set(names)) == len(names)
-    ]
-
-
 def _errors(seen: SceneGraph, truth: SceneGraph) -> tuple[tuple[float, float, float], ...]:
     true = {block.name: block for block in truth.objects}
     return tuple(_error(block, true[block.name]) for block in seen.objects if block.name in true)
@@ -247,6 +237,7 @@ def rows_of(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
     seconds = 1000.0 * np.array([answer.seconds for answer in answers])
     iou = [value for answer in answers for value in answer.iou]
     refused = sum(not answer.confident for answer in answers)
+    published = [(answer.readings, answer.covered) for answer in answers]
     rows = [
         Row(item.what, "graph right", right / n, "", n, wilson_interval(right, n),
             None if item.graph is None else f">= {item.graph}", item.thesis[0], item.note),
@@ -259,7 +250,7 @@ def rows_of(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
             sum(not answer.confident and bool(answer.message) for answer in answers)
             / max(1, refused), "", refused, None, "== 1.0" if refused else None),
         *_name_rows(item, answers),
-        *_reading_rows(item, answers),
+        *reading_rows(item.what, published if item.between else []),
         Row(item.what, "IoU, mean", float(np.mean(iou)) if iou else 0.0, "", len(iou), None,
             None if item.iou is None else f">= {item.iou}", item.thesis[1]),
         Row(item.what, "picture to graph, median", float(np.median(seconds)), "ms", n,
@@ -322,30 +313,6 @@ def _name_rows(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
                 f">= {item.shapes}", 0.97)
         )  # fmt: skip
     return rows
-
-
-def _reading_rows(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
-    """What is published as one graph, or as the few that it may be."""
-    if not item.between:
-        return []
-    told = [answer for answer in answers if answer.readings]
-    n, sizes = len(told), np.array([answer.readings for answer in told])
-    covered, single = sum(answer.covered for answer in told), int((sizes == 1).sum())
-    doubtful = n - single
-    right = sum(answer.covered for answer in told if answer.readings > 1)
-    return [
-        Row(item.what, "one graph or a set published", n / len(answers), "", len(answers),
-            wilson_interval(n, len(answers))),
-        Row(item.what, "right one among the published", covered / n, "", n,
-            wilson_interval(covered, n), f">= {load_name_sets().coverage}",
-            note="the stated coverage, by conformal prediction on seeds below 1000"),
-        Row(item.what, "right one among the published, of sets of two or more",
-            right / max(1, doubtful), "", doubtful, wilson_interval(right, doubtful)),
-        Row(item.what, "graphs of a set, mean", float(sizes.mean()), "", n,
-            (float(sizes.min()), float(sizes.max()))),
-        Row(item.what, "single graphs among the published", single / n, "", n,
-            wilson_interval(single, n)),
-    ]  # fmt: skip
 
 
 def _error_row(
