@@ -18,6 +18,11 @@ from scene_graph import COLORS, GraphStatus, Stacks, up_relations
 from sim_node import World, parse_scene
 
 CERTAIN = ("blue", "green", "yellow")
+PLAIN: Stacks = (
+    ("pink_box",),
+    ("red_box", "cyan_box", "green_box", "yellow_box", "blue_box"),
+    (),
+)
 LAYOUT: Stacks = (("blue_box", "orange_box"), ("green_box",), ("yellow_box",))
 
 
@@ -100,3 +105,14 @@ def test_plain_colours_are_no_doubt() -> None:
     fit = explain_colors(0.85 * np.array([COLORS[name] for name in CERTAIN]))
     assert (fit.margins >= MIN_MARGIN).all()
     assert (fit.gaps.min(axis=1) == 0.0).all()
+
+
+def test_a_picture_whose_channels_are_exchanged_is_no_set(world: World) -> None:
+    world.reset(PLAIN)
+    frame = world.render()
+    exchanged = np.ascontiguousarray(frame.rgb[..., ::-1])
+    seen = Perception(load_weights()).perceive(
+        Observation(exchanged, None, frame.depth, camera_of(world))
+    )
+    assert seen.status is GraphStatus.LOW_CONFIDENCE
+    assert "red and blue exchanged" in seen.message

@@ -23,6 +23,10 @@ Array = NDArray[np.float64]
 #: them, in at least so many pixels.
 _BEFORE: Final = (0.012, 0.05)
 _SOME: Final = 20
+_EXCHANGED: Final = (
+    "some colours have no name, but all have one with red and blue exchanged; "
+    "is the picture's encoding (rgb8, bgr8) the one it is sent with?"
+)
 
 
 @dataclass(frozen=True)
@@ -66,7 +70,7 @@ def name_blocks(
     known = tuple(name if sure else UNKNOWN for name, sure in zip(fit.names, fit.known))
     names = unique_names(known, shapes, stacks)
     doubt, possible = _doubt(fit, colors, table, names), None
-    if doubt and sets is not None:
+    if doubt and doubt != _EXCHANGED and sets is not None:
         possible = possible_colors(fit, colors, table, sets.threshold)
     alternatives: tuple[tuple[str, ...], ...] = ()
     if possible is not None:
@@ -104,10 +108,7 @@ def _doubt(fit: ColorFit, colors: Array, table: Array | None, names: Sequence[st
     if not fit.known.all():
         exchanged = explain_colors(colors[:, ::-1], None if table is None else table[::-1])
         if exchanged.known.all() and (exchanged.margins >= MIN_MARGIN).all():
-            return (
-                "some colours have no name, but all have one with red and blue exchanged; "
-                "is the picture's encoding (rgb8, bgr8) the one it is sent with?"
-            )
+            return _EXCHANGED
     for index, name in enumerate(names):
         seen = f"the colour of {name}, {_code(colors[index])},"
         if not fit.known[index]:
