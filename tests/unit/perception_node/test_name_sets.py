@@ -30,6 +30,10 @@ def mixed(first: str, second: str, share: float) -> np.ndarray:
     return (1.0 - share) * np.array(COLORS[first]) + share * np.array(COLORS[second])
 
 
+#: As red as orange.
+BETWEEN = mixed("red", "orange", 0.5)
+
+
 def sets_of(*paints: np.ndarray, threshold: float = 10.0) -> tuple[tuple[str, ...], ...] | None:
     """Of these beside three blocks whose colours are plain."""
     colors = 0.85 * np.array([*(COLORS[name] for name in CERTAIN), *paints])
@@ -68,6 +72,13 @@ def test_in_light_that_tells_no_colours_there_is_no_set() -> None:
     colors = np.array([COLORS[name] for name in (*CERTAIN, "red")]) * (1.4, 0.7, 0.1)
     colors = np.minimum(colors, 1.0)
     assert possible_colors(explain_colors(colors), colors, None, 10.0) is None
+
+
+def test_in_coloured_light_there_is_no_set() -> None:
+    colors = 0.85 * np.array([*(COLORS[name] for name in (*CERTAIN, "red", "pink")), BETWEEN])
+    assert possible_colors(explain_colors(colors), colors, None, 10.0) is not None
+    warm = colors * (1.15, 1.0, 0.75)
+    assert possible_colors(explain_colors(warm), warm, None, 10.0) is None
 
 
 @given(st.lists(st.floats(0.0, 20.0), min_size=1, max_size=300), st.floats(0.5, 0.99))

@@ -37,6 +37,9 @@ MOST_COLORS: Final = 3
 MOST_BLOCKS: Final = 2
 #: So many blocks have to be certain: they tell the light.
 LEAST_CERTAIN: Final = 2
+#: In a light whose gain of red or blue over green is further from 1, colours that are between two
+#: may be plain ones; logarithm.
+MOST_TINT: Final = 0.12
 
 
 @dataclass(frozen=True)
@@ -83,6 +86,8 @@ def in_doubt(fit: ColorFit, colors: Array, table: Array | None) -> NDArray[np.bo
     rest = explain_colors(colors[sure], table)
     named = tuple(name for name, certain in zip(fit.names, sure) if certain)
     if rest.names != named or not (rest.known & (rest.margins >= MIN_MARGIN)).all():
+        return None
+    if (np.abs(np.log(rest.light)) > MOST_TINT).any():
         return None
     return ~sure
 
