@@ -66,7 +66,7 @@ def test_what_is_right_whatever_a_block_is_called_is_done_and_what_is_not_is_ask
         # By its name it is asked for what it is.
         asked = planner.plan(ASKED, timeout=PATIENCE)
         assert asked.status == PlanToGoal.Response.NEEDS_ANSWER, asked.message
-        assert "orange" in asked.answers and len(asked.answers) == 2
+        assert "orange" in asked.answers and len(asked.answers) > 1
         place = next(i for i, stack in enumerate(judge.truth) if "orange_box" in stack)
         assert f"stack{place} ({doubtful.name})" in asked.message
         planner.start(ASKED, answer="the orange one", timeout=PATIENCE)
