@@ -48,7 +48,7 @@ def main() -> int:
     scores = [score for score in found if score is not None]
     threshold = conformal_threshold(scores, options.coverage)
     content = {
-        "command": f"make fit-name-sets COVERAGE={options.coverage:g}",
+        "command": f"make fit-name-sets COVERAGE={options.coverage:g} N={options.n}",
         "commit": source_commit(),
         "scenes": len(found),
         "scenes that can be read": len(scores),
