@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock peers train-visual data-masks train-masks record eval-perception eval-photo fit-probability eval-visual eval-tasks eval-faults eval-disturbances eval-replay bench-motion bench-obstacles bench-refusals bench-trajectories bench-execution bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock peers train-visual data-masks train-masks record eval-perception eval-photo fit-probability fit-name-sets eval-visual eval-tasks eval-faults eval-disturbances eval-doubt eval-replay bench-motion bench-obstacles bench-refusals bench-trajectories bench-execution bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -71,6 +71,9 @@ eval-photo: setup  ## graphs of photorealistic pictures; BPY=venv with bpy N= QU
 fit-probability: setup  ## the probability that a graph is right, seeds 100 to 999; N=
 	@$(RUN) python benchmarks/fit_probability.py $(if $(N),--n $(N))
 
+fit-name-sets: setup  ## sets of colours that hold the right ones, seeds 100 to 999; COVERAGE= N=
+	@$(RUN) python benchmarks/fit_name_sets.py $(if $(COVERAGE),--coverage $(COVERAGE)) $(if $(N),--n $(N))
+
 eval-visual: setup  ## the visual module with masks given, on unseen states; QUICK=1
 	@$(RUN) python benchmarks/eval_visual.py $(ARGS)
 
@@ -88,6 +91,9 @@ eval-disturbances: setup  ## tasks disturbed at random moments, and undisturbed 
 	@$(RUN) python benchmarks/eval_disturbances.py $(if $(KIND),--kind "$(KIND)") $(if $(VERIFY),--verify "$(VERIFY)") \
 	  $(if $(N),--n $(N)) $(if $(QUIET),--quiet $(QUIET)) $(if $(MINUTES),--minutes $(MINUTES)) $(if $(SEED),--seed $(SEED)) $(if $(RTF),--real-time-factor $(RTF)) \
 	  $(if $(JOBS),--jobs $(JOBS)) $(if $(RESUME),--resume) $(ARGS)
+
+eval-doubt: setup  ## tasks beside a block between two colours: done, asked, refused; N= QUICK=1
+	@$(RUN) python benchmarks/eval_doubt.py $(if $(N),--n $(N))
 
 eval-replay: setup  ## executed tasks once more in MuJoCo; N= BLOCKS= SOURCE=graph|process RTF= SEED= RESUME=1 QUICK=1
 	@$(RUN) python benchmarks/eval_replay.py $(if $(N),--n $(N)) $(if $(BLOCKS),--blocks $(BLOCKS)) $(if $(SOURCE),--source $(SOURCE)) \

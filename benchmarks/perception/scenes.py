@@ -138,6 +138,44 @@ def colored(
     return draw
 
 
+#: Colours beside which a block's paint may have come out, for each of the basic ones.
+BESIDE: Final[Mapping[str, tuple[str, ...]]] = {
+    "red": ("orange", "pink"),
+    "orange": ("red", "yellow"),
+    "yellow": ("orange",),
+    "green": ("cyan",),
+    "cyan": ("green", "blue"),
+    "blue": ("purple", "cyan"),
+    "purple": ("blue",),
+    "pink": ("red",),
+}
+
+
+def between_colors(most: int = 2) -> Callable[[int], Drawn]:
+    """Four to six blocks; the paint of up to ``most`` of them came out between two colours.
+
+    A block is called by the colour that its paint was to have. The other colour has 20 to 50 % of
+    it, which may look more like that one.
+    """
+
+    def draw(number: int) -> Drawn:
+        seed = FIRST_SEED + number
+        rng = np.random.default_rng([seed, 15])
+        chosen = [str(color) for color in rng.permutation(BASIC_COLORS)[: rng.integers(4, 7)]]
+        mixed = [color for color in chosen if color in BESIDE][: rng.integers(1, most + 1)]
+        named: dict[str, Any] = {}
+        for color in mixed:
+            other = str(rng.choice(BESIDE[color]))
+            share = rng.uniform(0.2, 0.5)
+            paint = (1.0 - share) * np.array(COLORS[color]) + share * np.array(COLORS[other])
+            named[object_name(color, BOX)] = {"paint": [round(float(part), 3) for part in paint]}
+        layout = random_arrangement([object_name(color, BOX) for color in chosen], rng)
+        light = (float(rng.uniform(0.85, 1.1)), (1.0, 1.0, 1.0))
+        return Drawn(seed, layout, {"blocks": {"named": named}}, light)
+
+    return draw
+
+
 def any_number(number: int) -> Drawn:
     """One to twelve blocks, up to as high as the arm stacks them, on three places."""
     seed = FIRST_SEED + number

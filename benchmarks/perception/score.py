@@ -19,6 +19,7 @@ from results_file import Row, wilson_interval
 from perception.color_clusters import find_by_color
 from perception.damages import Shot
 from perception.hidden_truth import is_partly_right
+from perception.readings import reading_rows, relations_of
 from perception.scenes import Drawn
 from perception.sets import PictureSet
 from perception.views import view_of
@@ -62,6 +63,8 @@ class Answer:
         probability, evidence: of :class:`Perceived`.
         baselines: whether the graph is right with each of :data:`BASELINES`.
         hides: whether it says that blocks hide others.
+        readings: how many graphs it may be, if it is accepted or in doubt about some names.
+        covered: whether the right one is among them.
     """
 
     seed: int
@@ -77,6 +80,8 @@ class Answer:
     probability: float = 0.0
     evidence: tuple[float, ...] = ()
     hides: bool = False
+    readings: int = 0
+    covered: bool = False
 
 
 def answer_of(drawn: Drawn, item: PictureSet, locator: Locator, world: World) -> Answer:
@@ -129,6 +134,8 @@ def answer_to(
     ]
     hides = seen.status is GraphStatus.HIDDEN
     confident = hides or seen.status is GraphStatus.CONFIDENT
+    doubtful = seen.status is GraphStatus.DOUBTFUL
+    readings = relations_of(seen.graph) if doubtful else [seen.graph.relations]
     answer = Answer(
         seed,
         seen.graph.relations == truth.relations,
@@ -142,6 +149,8 @@ def answer_to(
         probability=seen.probability,
         evidence=seen.evidence,
         hides=hides,
+        readings=len(readings) if confident or doubtful else 0,
+        covered=truth.relations in readings,
     )
     return answer, seen
 
@@ -228,6 +237,7 @@ def rows_of(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
     seconds = 1000.0 * np.array([answer.seconds for answer in answers])
     iou = [value for answer in answers for value in answer.iou]
     refused = sum(not answer.confident for answer in answers)
+    published = [(answer.readings, answer.covered) for answer in answers]
     rows = [
         Row(item.what, "graph right", right / n, "", n, wilson_interval(right, n),
             None if item.graph is None else f">= {item.graph}", item.thesis[0], item.note),
@@ -240,6 +250,7 @@ def rows_of(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
             sum(not answer.confident and bool(answer.message) for answer in answers)
             / max(1, refused), "", refused, None, "== 1.0" if refused else None),
         *_name_rows(item, answers),
+        *reading_rows(item.what, published if item.between else []),
         Row(item.what, "IoU, mean", float(np.mean(iou)) if iou else 0.0, "", len(iou), None,
             None if item.iou is None else f">= {item.iou}", item.thesis[1]),
         Row(item.what, "picture to graph, median", float(np.median(seconds)), "ms", n,

@@ -19,6 +19,7 @@ from perception.scenes import (
     Drawn,
     any_number,
     beside_the_picture,
+    between_colors,
     colored,
     plain,
     shifted_stacks,
@@ -77,6 +78,7 @@ class PictureSet:
             colour alone clusters of colours beside the network.
         told: whether one picture can tell what is wrong with it.
         note: what has to be known to read the rows.
+        between: whether colours may be in doubt, and what is published of that is counted.
         poses: bounds on median and 99th percentile of the centre's error [mm], median of yaw's [°].
     """
 
@@ -97,6 +99,7 @@ class PictureSet:
     shapes: float | None = None
     baselines: bool = False
     told: bool = True
+    between: bool = False
     note: str | None = None
 
 
@@ -264,6 +267,9 @@ SETS: Final = (
     _lit("warm", red=(1.05, 1.2), blue=(0.7, 0.9)),
     _lit("cool", red=(0.75, 0.92), blue=(1.08, 1.25)),
     _lit("dim", exposure=(0.4, 0.7)),
+    PictureSet("between", "4-6 blocks, paint of one or two between two colours",
+               between_colors(), between=True, told=False,
+               note="20 to 50 % of another colour; which name is right is in doubt"),
     PictureSet("shapes", "boxes and cylinders of colours not seen, with depth",
                colored(UNSEEN_COLORS, shapes=("box", "cylinder")), 500, shapes=0.99,
                thesis=(None, None)),

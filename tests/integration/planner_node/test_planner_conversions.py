@@ -50,7 +50,7 @@ def constants(message: Any) -> dict[str, int]:
 def test_the_numbers_are_those_of_the_messages() -> None:
     result, feedback = constants(AchieveGoal.Result), constants(AchieveGoal.Feedback)
     response = constants(PlanToGoal.Response)
-    assert len(response) == 17
+    assert len(response) == 18
     assert {item.name: item.value for item in Status} == result
     assert {item.name: item.value for item in Stage} == feedback
     assert response.items() <= result.items()

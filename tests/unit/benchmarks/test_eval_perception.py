@@ -9,11 +9,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import yaml
+from perception.readings import reading_rows, relations_of
 from perception.scenes import CLUTTER_GAP
 from perception.score import Answer, refusals, rows_of
 from perception.sets import SETS, PictureSet, UnknownSetError, sets_named
 from perception.views import view_of
 
+from scene_graph import Relation, SceneGraph, SceneObject
 from sim_node import SceneConfig, World, parse_scene, random_layout
 
 
@@ -128,3 +130,28 @@ def test_refusals_are_counted_without_names_and_numbers() -> None:
         answer(True, True),
     ]
     assert refusals(answers) == {"LOW_CONFIDENCE: BLOCK is N mm high": 2}
+
+
+def test_a_doubtful_graph_stands_for_each_that_its_names_make() -> None:
+    objects = (
+        SceneObject("blue_box", "blue", "box"),
+        SceneObject("unknown_box", "unknown", "box", alternatives=("orange", "blue", "red")),
+    )
+    up = frozenset([Relation("unknown_box", "up", "blue_box")])
+    graphs = relations_of(SceneGraph(objects, up))
+    # Blue it is not, where another one is.
+    assert graphs == [
+        frozenset([Relation(name, "up", "blue_box")]) for name in ("orange_box", "red_box")
+    ]
+
+
+def test_what_is_published_is_counted_by_how_many_graphs_it_may_be() -> None:
+    answers = [(0, False), (1, True), (1, True), (2, True), (4, False)]
+    values = {row.metric: row.value for row in reading_rows("a set", answers)}
+    assert values == {
+        "one graph or a set published": 0.8,
+        "right one among the published": 0.75,
+        "graphs of a set, mean": 2.0,
+        "single graphs among the published": 0.5,
+        "right one among the published, of sets of two or more": 0.5,
+    }

@@ -26,6 +26,7 @@ from planner_node.loop.plan_watch import PlanSight
 from planner_node.settings import Settings
 from scene_graph import (
     ONE_ROW,
+    GraphStatus,
     Move,
     Place,
     SceneGraph,
@@ -72,6 +73,18 @@ def sighting_of(stacks: Stacks, stamp: int = 0, **fields: Any) -> Sighting:
     return Sighting(**{"graph": graph, "stamp": stamp, "frame_id": "world", **fields})
 
 
+def in_doubt(sighting: Sighting, **alternatives: str) -> Sighting:
+    """With other colours that blocks may have: ``red_box="orange brown"``."""
+    if not alternatives:
+        return sighting
+    objects = tuple(
+        replace(item, alternatives=tuple(alternatives.get(item.name, "").split()))
+        for item in sighting.graph.objects
+    )
+    graph = replace(sighting.graph, objects=objects)
+    return replace(sighting, graph=graph, status=GraphStatus.DOUBTFUL)
+
+
 #: What a motion node does with a plan; what it yields it reports, one at a time.
 Behaviour = Callable[["LoopBench", Plan], Iterator[MotionReport]]
 
@@ -87,6 +100,7 @@ class LoopBench:
 
     Attributes:
         fault: fields of the sightings when something is wrong.
+        alternatives: other colours that blocks may have, as far as anybody can see.
         silent: perception reports nothing.
         mute: the motion node says nothing, not even that it lives.
         deaf: it hears nothing.
@@ -102,6 +116,7 @@ class LoopBench:
     def __init__(self, *behaviours: Behaviour, **settings: Any) -> None:
         self.stacks: Stacks = START
         self.fault: dict[str, Any] = {}
+        self.alternatives: dict[str, str] = {}
         self.silent = False
         self.mute = False
         self.deaf = False
@@ -128,10 +143,10 @@ class LoopBench:
         self._running: tuple[str, Iterator[MotionReport]] | None = None
         self._next_beat = 0.0
 
-    def achieve(self, goal: str = GOAL, given: str = "") -> Outcome:
-        return self.loop().run(lambda: self.read(goal), given)
+    def achieve(self, goal: str = GOAL, given: str = "", answer: str = "") -> Outcome:
+        return self.loop(answer).run(lambda: self.read(goal), given)
 
-    def loop(self) -> ClosedLoop:
+    def loop(self, answer: str = "") -> ClosedLoop:
         return ClosedLoop(
             self.settings,
             self.scenes,
@@ -141,10 +156,12 @@ class LoopBench:
             lambda: self.shut_down,
             self.clock,
             lambda: self.conflict,
+            answer,
         )
 
     def look(self) -> None:
-        self.scenes.receive(sighting_of(self.stacks, self.clock.ros_now(), **self.fault))
+        sighting = sighting_of(self.stacks, self.clock.ros_now(), **self.fault)
+        self.scenes.receive(in_doubt(sighting, **self.alternatives))
 
     def report(self, report: MotionReport) -> None:
         if self.tells_arm and report.arm == ArmPlace.UNKNOWN:

@@ -8,7 +8,7 @@ import re
 from dataclasses import replace
 from typing import Final
 
-from scene_graph import GraphStatus, Relation, SceneGraph, SceneObject, object_name
+from scene_graph import GraphStatus, SceneObject, object_name
 
 from .pipeline import Perceived
 
@@ -63,13 +63,13 @@ class Alike:
         for kind, items in kinds.items():
             names.update(self._named(kind, items, status))
             self._stamps[kind] = stamp
-        if status is GraphStatus.CONFIDENT:
+        if status.sees_all:
             for kind in set(self._seen) - set(kinds):
                 self._forget(kind)
         if all(old == new for old, new in names.items()):
             return perceived
         message = re.sub(r"\w+", lambda word: names.get(word[0], word[0]), perceived.message)
-        return replace(perceived, graph=_renamed(graph, names), message=message)
+        return replace(perceived, graph=graph.renamed(names), message=message)
 
     def _forget(self, kind: str) -> None:
         if self._stamp - self._stamps.get(kind, 0) > FORGOTTEN:
@@ -94,7 +94,7 @@ class Alike:
         guessed: dict[str, str] = {}
         if len(left) == 1 and len(missing) == 1:
             found[missing.pop()] = left.pop()
-        elif left and missing and status is not GraphStatus.CONFIDENT:
+        elif left and missing and not status.sees_all:
             # Who is who may be seen yet: nothing is learnt of this picture.
             guessed = dict(zip((item.name for item in left), sorted(missing)))
             left = left[len(missing) :]
@@ -107,7 +107,7 @@ class Alike:
             found[f"{kind}_{self._given[kind]}"] = item
         for name, item in found.items():
             before[name] = item.position_world
-        if status is GraphStatus.CONFIDENT:  # all are seen: who is not there is gone
+        if status.sees_all:  # all are seen: who is not there is gone
             for name in missing:
                 del before[name]
         return {item.name: name for name, item in found.items()} | guessed
@@ -147,17 +147,3 @@ class Alike:
                 if far < self._reach and APART * far < min(others, default=math.inf):
                     pairs.append((name, item))
         return pairs
-
-
-def _renamed(graph: SceneGraph, names: dict[str, str]) -> SceneGraph:
-    objects = [replace(item, name=names.get(item.name, item.name)) for item in graph.objects]
-    relations = frozenset(
-        Relation(
-            names.get(item.subject, item.subject),
-            item.predicate,
-            names.get(item.object, item.object),
-        )
-        for item in graph.relations
-    )
-    ordered = tuple(sorted(objects, key=lambda item: item.name))
-    return replace(graph, objects=ordered, relations=relations)

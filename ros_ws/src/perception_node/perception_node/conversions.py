@@ -64,6 +64,7 @@ def perceived_to_message(
     message.status = int(perceived.status)
     message.message = perceived.message
     message.probability = float(perceived.probability)
+    message.coverage = float(perceived.coverage)
     message.processing_seconds = float(processing_seconds)
     return message
 

@@ -59,6 +59,7 @@ def build_graph(
             label=segment.label,
             coordinates=(float(a), float(b)),
             confidence=float(confidence[index]),
+            alternatives=names.alternatives[index] if names.alternatives else (),
         )
         objects.append(item if pose is None else _posed(item, pose))
     columns = [[names.names[item] for item in stack] for stack in standing.stacks]

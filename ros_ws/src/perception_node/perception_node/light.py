@@ -83,6 +83,8 @@ class ColorFit:
         margins: by how much the next one is further away, in this light and in those by which all
             blocks together are explained about as well, shape (N,) [ΔE].
         light: its colour, gains of red, green and blue.
+        gaps: by how much each of ``scene_graph.COLORS`` is further away than the nearest, in the
+            same lights, shape (N, names) [ΔE].
     """
 
     names: tuple[str, ...]
@@ -90,6 +92,7 @@ class ColorFit:
     distances: Array
     margins: Array
     light: Array
+    gaps: Array
 
     @property
     def known(self) -> NDArray[np.bool_]:
@@ -116,7 +119,7 @@ def explain_colors(colors: Array, table: Array | None = None) -> ColorFit:
             no block is taken for metal.
     """
     if len(colors) == 0:
-        return ColorFit((), (), np.zeros(0), np.zeros(0), np.ones(3))
+        return ColorFit((), (), np.zeros(0), np.zeros(0), np.ones(3), np.zeros((0, len(_NAMES))))
     white = _explain(colors, table, np.ones((1, 3)))
     enough = len(colors) >= _ENOUGH and white.distances.max() < _WHITE_ENOUGH
     if enough and white.margins.min() >= MIN_MARGIN:
@@ -125,7 +128,8 @@ def explain_colors(colors: Array, table: Array | None = None) -> ColorFit:
     fine = _explain(colors, table, coarse.light * _lights(_FINER_GAINS))
     # A light far from the best one may explain the blocks by other names.
     margins = np.minimum(fine.margins, coarse.margins)
-    return ColorFit(fine.names, fine.others, fine.distances, margins, fine.light)
+    gaps = np.minimum(fine.gaps, coarse.gaps)
+    return ColorFit(fine.names, fine.others, fine.distances, margins, fine.light, gaps)
 
 
 def _lights(gains: Array) -> Array:
@@ -158,7 +162,8 @@ def _explain(colors: Array, table: Array | None, gains: Array) -> ColorFit:
     of = np.arange(len(colors))
     first, second = best[of, order[:, 0]], best[of, order[:, 1]]
     # How much all are worse explained together, where one is called otherwise.
-    by_name = ((total[..., None] - least_own)[..., None] + bounded).min(axis=(0, 1))
+    others = (total[..., None] - least_own)[..., None]
+    by_name = (others + bounded).min(axis=(0, 1))
     by_name[of, order[:, 0]] = np.inf
     risen = np.sqrt(np.maximum(by_name.min(axis=1) - total.min(), 0.0))
     is_metal = metal[light, of, order[:, 0]] <= first
@@ -168,7 +173,20 @@ def _explain(colors: Array, table: Array | None, gains: Array) -> ColorFit:
         np.sqrt(np.maximum(first - _METAL_COST * is_metal, 0.0)),
         np.minimum(np.sqrt(second) - np.sqrt(first), risen),
         gains[light],
+        _gaps(best, (others + costs).min(axis=(0, 1))),
     )
+
+
+def _gaps(best: Array, by_name: Array) -> Array:
+    """By how much each name fits worse than the best one, in one light and in any, (N, names).
+
+    Args:
+        best: squared distances of the blocks from all names in the best light, (N, names).
+        by_name: costs of all blocks together, where one is called so, likewise.
+    """
+    apart = np.sqrt(best) - np.sqrt(best.min(axis=1, keepdims=True))
+    risen = np.sqrt(np.maximum(by_name - by_name.min(axis=1, keepdims=True), 0.0))
+    return np.minimum(apart, risen)
 
 
 def _distances(light: Array, table: Array | None, gains: Array) -> tuple[Real, Real]:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scene_graph import UNKNOWN, object_name
 
 from .light import MIN_MARGIN, ColorFit, explain_colors
+from .name_sets import NameSets, possible_colors
 from .segment import Segments
 
 Array = NDArray[np.float64]
@@ -22,6 +23,10 @@ Array = NDArray[np.float64]
 #: them, in at least so many pixels.
 _BEFORE: Final = (0.012, 0.05)
 _SOME: Final = 20
+_EXCHANGED: Final = (
+    "some colours have no name, but all have one with red and blue exchanged; "
+    "is the picture's encoding (rgb8, bgr8) the one it is sent with?"
+)
 
 
 @dataclass(frozen=True)
@@ -32,6 +37,8 @@ class Names:
         colors: names of ``scene_graph.COLORS``, ``UNKNOWN`` where none fits.
         names: unique.
         doubt: a sentence about the first block whose colour has no certain name; empty if all have.
+        alternatives: the colours that each may have instead; empty where all are certain, or where
+            what they may be is not known.
         distance, margin: the worst of all blocks, see :class:`ColorFit` [ΔE].
     """
 
@@ -40,6 +47,7 @@ class Names:
     doubt: str = ""
     distance: float = 0.0
     margin: float = np.inf
+    alternatives: tuple[tuple[str, ...], ...] = ()
 
 
 def name_blocks(
@@ -47,25 +55,52 @@ def name_blocks(
     segments: Segments,
     shapes: Sequence[str],
     stacks: Sequence[Sequence[int]],
+    sets: NameSets | None = None,
 ) -> Names:
     """Names every block by its colour and shape.
 
     Args:
         rgb: shape (height, width, 3).
         shapes, stacks: see :func:`unique_names`.
+        sets: how colours in doubt become sets of colours; None: they do not.
     """
     parts = [segment.part for segment in segments]
     colors, table = mean_colors(rgb, parts), color_before(rgb, parts)
     fit = explain_colors(colors, table)
     known = tuple(name if sure else UNKNOWN for name, sure in zip(fit.names, fit.known))
     names = unique_names(known, shapes, stacks)
+    doubt, possible = _doubt(fit, colors, table, names), None
+    if doubt and doubt != _EXCHANGED and sets is not None:
+        possible = possible_colors(fit, colors, table, sets.threshold)
+    alternatives: tuple[tuple[str, ...], ...] = ()
+    if possible is not None:
+        alternatives = tuple(
+            tuple(other for other in some if other != own) for some, own in zip(possible, known)
+        )
+        doubt = _choice(colors, names, possible)
     return Names(
         known,
         names,
-        _doubt(fit, colors, table, names),
+        doubt,
         float(fit.distances.max(initial=0.0)),
         float(fit.margins.min(initial=np.inf)),
+        alternatives,
     )
+
+
+def _choice(colors: Array, names: Sequence[str], possible: Sequence[Sequence[str]]) -> str:
+    """A sentence about the colours that blocks may have."""
+    told = [
+        f"the colour of {name}, {_code(color)}, may be {' or '.join(some)}"
+        for name, color, some in zip(names, colors, possible)
+        if len(some) > 1
+    ]
+    return f"{' and '.join(told)}; give it more light, or say which it is"
+
+
+def _code(color: Array) -> str:
+    red, green, blue = (round(255.0 * float(value)) for value in color)
+    return f"({red}, {green}, {blue}) of 255"
 
 
 def _doubt(fit: ColorFit, colors: Array, table: Array | None, names: Sequence[str]) -> str:
@@ -73,13 +108,9 @@ def _doubt(fit: ColorFit, colors: Array, table: Array | None, names: Sequence[st
     if not fit.known.all():
         exchanged = explain_colors(colors[:, ::-1], None if table is None else table[::-1])
         if exchanged.known.all() and (exchanged.margins >= MIN_MARGIN).all():
-            return (
-                "some colours have no name, but all have one with red and blue exchanged; "
-                "is the picture's encoding (rgb8, bgr8) the one it is sent with?"
-            )
+            return _EXCHANGED
     for index, name in enumerate(names):
-        red, green, blue = (round(255.0 * float(value)) for value in colors[index])
-        seen = f"the colour of {name}, ({red}, {green}, {blue}) of 255,"
+        seen = f"the colour of {name}, {_code(colors[index])},"
         if not fit.known[index]:
             return f"{seen} is none that has a name; is the light very coloured or too bright?"
         if fit.margins[index] < MIN_MARGIN:

@@ -264,7 +264,7 @@ class PerceptionNode(Node):
         if problem := self._continuity.calibration_problem(observation, graph, stamp):
             return self._perception.rejected(GraphStatus.BAD_IMAGE, problem)
         perceived = self._alike.named(perceived, stamp)
-        if perceived.status is GraphStatus.CONFIDENT:
+        if perceived.status.sees_all:
             self._continuity.understand(observation, graph, stamp)
         elif perceived.status is GraphStatus.OCCLUDED and unchanged >= FROZEN:
             hint = (

@@ -18,6 +18,7 @@ from .errors import BadImageError, PerceptionError
 from .fallen import find_fallen, with_fallen
 from .graph import build_graph
 from .hiding import Hidden, find_hidden
+from .name_sets import load_name_sets
 from .names import name_blocks
 from .observation import Observation
 from .places import Places, Points, RowOfPlaces, TwoRows
@@ -52,6 +53,8 @@ class Perceived:
             come that far.
         probability: that the whole graph is right, 0..1; 0 without objects.
         evidence: what that follows from, see :mod:`.probability`; empty without objects.
+        coverage: of a doubtful graph: share of such scenes whose names are among those given, at
+            least; else 0.
     """
 
     graph: SceneGraph
@@ -60,6 +63,7 @@ class Perceived:
     segments: Segments | None = None
     probability: float = 0.0
     evidence: tuple[float, ...] = ()
+    coverage: float = 0.0
 
 
 class Perception:
@@ -86,6 +90,7 @@ class Perception:
         self.make_places = places
         self.places = places(self.config.stack_positions)
         self._probability = load_parameters()
+        self._name_sets = load_name_sets()
         feet = np.array([place.position_world for place in self.places.places])
         self._volume = Volume.over(feet, self.config.column_height) if len(feet) else None
 
@@ -153,7 +158,9 @@ class Perception:
         hidden: tuple[Hidden, ...] = ()
         if isinstance(places, TwoRows):
             hidden = find_hidden(observation, segments, standing, blocks, seen.glimpses, config)
-        names = name_blocks(observation.rgb, segments, blocks.shapes, standing.stacks)
+        names = name_blocks(
+            observation.rgb, segments, blocks.shapes, standing.stacks, self._name_sets
+        )
         graph = build_graph(
             observation, segments, occlusion, coordinates, standing, blocks, names, hidden
         )
@@ -166,7 +173,9 @@ class Perception:
         if self._volume is not None and config.mask_source == RGBD:
             strays = find_strays(taken, self._volume, segments)
             graph, verdict = with_strays(graph, strays), with_stray(verdict, strays)
-        return Perceived(graph, *verdict, segments, likely, known)
+        doubtful = verdict.status is GraphStatus.DOUBTFUL
+        coverage = self._name_sets.coverage if doubtful else 0.0
+        return Perceived(graph, *verdict, segments, likely, known, coverage)
 
     def _seen(self, observation: Observation, segments: Segments, places: Places) -> Seen:
         """The blocks measured; of two rows without those that are mostly covered."""

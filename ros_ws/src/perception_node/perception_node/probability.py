@@ -65,7 +65,7 @@ def evidence(
     worst = max((max(block.deviation[:2]) for block in blocks.measured), default=0.0)
     values = (
         1.0,
-        float(status is GraphStatus.LOW_CONFIDENCE),
+        float(status in (GraphStatus.LOW_CONFIDENCE, GraphStatus.DOUBTFUL)),
         float(status is GraphStatus.OCCLUDED),
         float(status is GraphStatus.UNSTABLE),
         float(not blocks.measured),

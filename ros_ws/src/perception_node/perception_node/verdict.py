@@ -60,7 +60,7 @@ def judge(
         return Verdict(GraphStatus.UNSTABLE, f"{standing.problem}; put every block on a place")
     if sentence := instability(blocks, names.names, standing, config.limits, hidden):
         return Verdict(GraphStatus.UNSTABLE, sentence)
-    if names.doubt:
+    if names.doubt and (hidden or not names.alternatives):
         return Verdict(GraphStatus.LOW_CONFIDENCE, names.doubt)
     if sentence := unclear_shape(blocks, names.names):
         return Verdict(GraphStatus.LOW_CONFIDENCE, sentence)
@@ -94,6 +94,8 @@ def judge(
     if hidden:
         sentence = hidden_by_blocks(hidden, standing, blocks, names.names)
         return Verdict(GraphStatus.HIDDEN, sentence)
+    if names.doubt:
+        return Verdict(GraphStatus.DOUBTFUL, names.doubt)
     return Verdict(GraphStatus.CONFIDENT)
 
 

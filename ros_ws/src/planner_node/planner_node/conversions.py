@@ -119,6 +119,7 @@ def outcome_to_message(outcome: Outcome) -> AchieveGoal.Result:
     return AchieveGoal.Result(
         status=int(outcome.status),
         message=outcome.message,
+        answers=list(outcome.answers),
         module=outcome.module,
         moves_planned=outcome.moves_planned,
         moves_executed=outcome.moves_executed,

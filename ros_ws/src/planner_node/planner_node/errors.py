@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
+
+if TYPE_CHECKING:
+    from .loop.readings import Doubt
 
 
 class PlannerError(Exception):
@@ -173,6 +176,17 @@ class NotConfidentError(PlannerError):
 
     status = "NOT_CONFIDENT"
     module = "perception"
+
+
+class NeedsAnswerError(PlannerError):
+    """What the goal means depends on ``doubt``, about which the message asks."""
+
+    status = "NEEDS_ANSWER"
+    module = "perception"
+
+    def __init__(self, doubt: Doubt, question: str) -> None:
+        super().__init__(question)
+        self.doubt = doubt
 
 
 class GoalImageError(PlannerError):

@@ -38,6 +38,7 @@ from .errors import (
     BusyError,
     ConflictError,
     InvalidGoalError,
+    NeedsAnswerError,
     NotConfidentError,
     PlannerError,
     SearchError,
@@ -45,6 +46,7 @@ from .errors import (
 from .goals import Goal, ResolveGoal
 from .image_client import ImageClient
 from .loop import (
+    Answers,
     ClosedLoop,
     MotionLink,
     Outcome,
@@ -168,6 +170,8 @@ class PlannerNode(Node):
             self._plan_to_goal(request, response)
         except PlannerError as error:
             response.status, response.message = int(Status[error.status]), str(error)
+            if isinstance(error, NeedsAnswerError):
+                response.answers = list(error.doubt.colors)
             if isinstance(error, SearchError):
                 response.expanded, response.planning_seconds = error.expanded, error.seconds
         except Exception as error:
@@ -191,7 +195,7 @@ class PlannerNode(Node):
         if self._latent is not None:
             goal, found = self._latent.plan(request, scene.stacks, scene.stamp)
         else:
-            goal, found = self._plan_in(scene, resolve, request.plan.strip())
+            scene, goal, found = self._plan_in(scene, resolve, request)
         plan = plan_for(scene, goal, found, self._scenes.now())
         response.expanded, response.planning_seconds = found.expanded, found.seconds
         response.bound = found.bound
@@ -215,18 +219,25 @@ class PlannerNode(Node):
                 self._motion.start(plan)
             response.message += f"; published as plan {plan.plan_id}"
 
-    def _plan_in(self, scene: Scene, resolve: ResolveGoal, given: str) -> tuple[Goal, SearchResult]:
+    def _plan_in(
+        self, scene: Scene, resolve: ResolveGoal, request: PlanToGoal.Request
+    ) -> tuple[Scene, Goal, SearchResult]:
         """A plan to the goal, one given, or where blocks hide others one that uncovers them."""
         if not scene.hidden:
-            goal = resolve(scene.on_places, scene.rows)
-            if given:
-                return goal, given_plan_in(scene, given, goal, self._settings)
-            return goal, plan_in(scene, goal, self._settings, self._is_shut_down)
+            look = functools.partial(self._scenes.latest, self._motion.last_end)
+            answers = Answers(request.answer, self._scenes.answer, look, self._search)
+            scene, goal = answers.goal_in(scene, resolve)
+            if given := request.plan.strip():
+                return scene, goal, given_plan_in(scene, given, goal, self._settings)
+            return scene, goal, self._search(scene, goal)
         meant = meaning(resolve, scene)
         if meant is not None and decided(meant, scene) and meant.holds(scene.stacks):
-            return meant, plan_in(scene, meant, self._settings, self._is_shut_down)
+            return scene, meant, self._search(scene, meant)
         found = uncover_in(scene, meant, self._settings, self._is_shut_down)
-        return meant or Goal(()), found
+        return scene, meant or Goal(()), found
+
+    def _search(self, scene: Scene, goal: Goal) -> SearchResult:
+        return plan_in(scene, goal, self._settings, self._is_shut_down)
 
     def _on_achieve_goal(self, handle: ServerGoalHandle) -> AchieveGoal.Result:
         request, feedback = handle.request, FeedbackWriter()
@@ -244,6 +255,7 @@ class PlannerNode(Node):
         loop = ClosedLoop(
             *(self._settings, self._scenes, motion, report, cancelled, self._is_shut_down),
             conflict=conflict,
+            answer=request.answer,
         )
         claim = _Claim(f"achieve_goal '{request.goal or 'goal image'}'", cancelled)
         try:

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 from .errors import InconsistentRelationsError
@@ -25,6 +26,12 @@ class GraphStatus(IntEnum):
     NO_OBJECTS = 4
     BAD_IMAGE = 5
     HIDDEN = 6
+    DOUBTFUL = 7
+
+    @property
+    def sees_all(self) -> bool:
+        """Whether all blocks are seen, and stand as the graph says."""
+        return self in (GraphStatus.CONFIDENT, GraphStatus.DOUBTFUL)
 
 
 @dataclass(frozen=True)
@@ -52,6 +59,15 @@ class SceneGraph:
             if item.name == name:
                 return item
         raise KeyError(name)
+
+    def renamed(self, names: Mapping[str, str]) -> SceneGraph:
+        """The same with other names for some objects."""
+        if not names:
+            return self
+        objects = [replace(item, name=names.get(item.name, item.name)) for item in self.objects]
+        relations = (item.renamed(names) for item in self.relations)
+        ordered = tuple(sorted(objects, key=lambda item: item.name))
+        return replace(self, objects=ordered, relations=frozenset(relations))
 
     def stacks(self) -> Stacks:
         """The state that the relations describe; see :func:`stacks_from_relations`.

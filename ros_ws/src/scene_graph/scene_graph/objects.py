@@ -72,6 +72,7 @@ class SceneObject:
         label: of its mask in the picture; 0 if it did not come from an image.
         coordinates: φ = (a, b) of the visual module G, from the bottom-left corner, in 0..1.
         confidence: IoU(u, ũ) of A.2.5, lowered by hidden parts, in 0..1.
+        alternatives: colours that it may have instead, the likeliest first; of a doubtful graph.
     """
 
     name: str
@@ -83,3 +84,9 @@ class SceneObject:
     label: int = 0
     coordinates: tuple[float, float] = (0.0, 0.0)
     confidence: float = 1.0
+    alternatives: tuple[str, ...] = ()
+
+    @property
+    def readings(self) -> tuple[str, ...]:
+        """All colours that it may have, the likeliest first."""
+        return ((self.color,) if self.color != UNKNOWN else ()) + self.alternatives

@@ -35,6 +35,13 @@ class Relation:
         """The relation as people say it: ``red_box on blue_box``."""
         return f"{self.subject} {PREDICATES[self.predicate].words} {self.object}"
 
+    def renamed(self, names: Mapping[str, str]) -> Relation:
+        """The same of blocks that are called otherwise."""
+        subject, object_ = names.get(self.subject), names.get(self.object)
+        if subject is None and object_ is None:
+            return self
+        return Relation(subject or self.subject, self.predicate, object_ or self.object)
+
     def holds(self, spots: Mapping[str, Spot]) -> bool:
         """Whether a state fulfils it; what is not there fulfils nothing.
 

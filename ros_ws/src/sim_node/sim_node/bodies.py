@@ -58,7 +58,7 @@ def create_block(client: int, block: Block, position_world: NDArray[Any], yaw: f
     body = pybullet.createMultiBody(
         block.mass,
         _collision(client, block.shape, block.size),
-        _visual(client, block.shape, block.size, COLORS[block.color]),
+        _visual(client, block.shape, block.size, block.paint or COLORS[block.color]),
         np.subtract(position_world, [0.0, 0.0, block.centre_above_body]),
         pybullet.getQuaternionFromEuler((0.0, 0.0, yaw)),
         physicsClientId=client,

@@ -79,9 +79,12 @@ class PlannerClient:
         goal_segmentation: Image | None = None,
         execute: bool = False,
         plan: str = "",
+        answer: str = "",
         timeout: float = 10.0,
     ) -> PlanToGoal.Response:
         """The answer of plan_to_goal; ``goal`` or the images are given, or another's ``plan``.
+
+        ``answer`` is the one to a question that was asked back (NEEDS_ANSWER).
 
         Raises:
             PlannerUnavailableError: no answer within ``timeout`` [s].
@@ -92,6 +95,7 @@ class PlannerClient:
             goal_segmentation=goal_segmentation or Image(),
             execute=execute,
             plan=plan,
+            answer=answer,
         )
         return self._call(self._plan_client, request, timeout)
 
@@ -102,6 +106,7 @@ class PlannerClient:
         goal_image: Image | None = None,
         goal_segmentation: Image | None = None,
         plan: str = "",
+        answer: str = "",
         timeout: float = 10.0,
     ) -> None:
         """Begins to achieve a goal, given as for :meth:`plan`; returns once the planner has it.
@@ -117,6 +122,7 @@ class PlannerClient:
             goal_image=goal_image or Image(),
             goal_segmentation=goal_segmentation or Image(),
             plan=plan,
+            answer=answer,
         )
         client, identity = self._goal_client, UUID(uuid=list(uuid.uuid4().bytes))
 

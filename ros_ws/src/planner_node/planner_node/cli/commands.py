@@ -52,6 +52,7 @@ def plan_to_goal(arguments: Sequence[str] | None = None) -> int:
                 goal_segmentation=segmentation,
                 execute=options.execute,
                 plan=plan,
+                answer=options.answer,
                 timeout=options.timeout,
             )
     except PlannerUnavailableError as error:
@@ -92,6 +93,7 @@ def achieve_goal(arguments: Sequence[str] | None = None) -> int:
                     goal_image=image,
                     goal_segmentation=segmentation,
                     plan=plan,
+                    answer=options.answer,
                     timeout=min(ANSWER_TIMEOUT, options.timeout),
                 )
             except KeyboardInterrupt as interrupt:
@@ -136,6 +138,9 @@ def _parser(name: str, description: str, timeout: float) -> argparse.ArgumentPar
         type=Path,
         metavar="FILE",
         help="another planner's plan, in PDDL or as moves such as '(0, 2)', in place of a search",
+    )
+    parser.add_argument(
+        "--answer", default="", metavar="COLOR", help="to what was asked back; several with commas"
     )
     return parser
 

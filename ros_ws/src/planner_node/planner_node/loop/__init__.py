@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The closed loop on plain values: what is seen, what is planned, what becomes of it."""
 
+from .certain_goal import Answers, certain_goal
 from .clock import Clock
 from .closed_loop import ClosedLoop
 from .motion_link import MotionLink, PlanTopic
@@ -11,6 +12,7 @@ from .scene_plan import decided, given_plan_in, meaning, plan_in, uncover_in
 from .scene_watch import SceneWatch
 
 __all__ = [
+    "Answers",
     "Clock",
     "ClosedLoop",
     "MotionLink",
@@ -23,6 +25,7 @@ __all__ = [
     "Sighting",
     "Stage",
     "Status",
+    "certain_goal",
     "decided",
     "given_plan_in",
     "meaning",

@@ -17,6 +17,7 @@ from ..errors import (
     ConflictError,
     ImpossibleError,
     MotionSilentError,
+    NeedsAnswerError,
     NoSceneGraphError,
     NotConfidentError,
     ObjectLostError,
@@ -28,6 +29,7 @@ from ..search import SearchResult
 from ..settings import EACH_MOVE, WATCH, Settings
 from .account import account_for, agree, besides, describe_difference, in_the_view
 from .arm_home import ArmHome
+from .certain_goal import Answers
 from .clock import Clock
 from .motion_link import MotionLink
 from .plan import Plan, plan_for
@@ -62,6 +64,7 @@ class ClosedLoop:
         shut_down: Callable[[], bool],
         clock: Clock | None = None,
         conflict: Callable[[], str] = lambda: "",
+        answer: str = "",
     ) -> None:
         """See :class:`ClosedLoop`.
 
@@ -69,6 +72,7 @@ class ClosedLoop:
             report: gets every progress.
             cancelled: includes ``shut_down``.
             conflict: a sentence while two nodes do the work of one; nothing is claimed then.
+            answer: to what has to be asked about blocks in doubt, see :class:`.Answers`.
         """
         self._settings = settings
         self._scenes = scenes
@@ -87,6 +91,7 @@ class ClosedLoop:
         )
         self._patience, self._remarks = 1, list[str]()
         self._possible = PossibleMoves(settings, cancelled)
+        self._answers = Answers(answer, scenes.answer, self._look_again, self._possible.plan)
         self._requested = scenes.now()
         self.outcome = Outcome()
 
@@ -106,6 +111,8 @@ class ClosedLoop:
         except PlannerError as error:
             if isinstance(error, MotionSilentError):
                 self._glance()
+            if isinstance(error, NeedsAnswerError):
+                self._note(answers=error.doubt.colors)
             told = isinstance(error, CancelledError | TooManyReplansError)
             if not told and str(error) not in self.outcome.causes:
                 self._because(str(error))
@@ -189,7 +196,7 @@ class ClosedLoop:
             attempts += 1
             plan = plan_for(scene, goal or Goal(()), found, self._scenes.now())
             scene = self._carry_out(plan, plan.goal)
-        return scene, resolve(scene.on_places, scene.rows)
+        return self._answers.goal_in(scene, resolve)
 
     def _work_off(self, scene: Scene, goal: Goal, found: SearchResult) -> Scene:
         """Has what was found carried out, all at once or with a look after each move."""
@@ -282,6 +289,9 @@ class ClosedLoop:
                 raise
         self._note(final=scene)
         return scene
+
+    def _look_again(self) -> Scene:
+        return self._look(Stage.PERCEIVING, "looking again")
 
     def _glance(self) -> None:
         """Notes the newest scene, if there is one, where nobody can be waited for any more."""

@@ -47,6 +47,7 @@ class Status(IntEnum):
     CONFLICT = 14
     INVALID_PLAN = 15
     ENGINE_FAILED = 16
+    NEEDS_ANSWER = 17
     MOTION_FAILED = 20
     MOTION_SILENT = 21
     TOO_MANY_REPLANS = 22
@@ -85,6 +86,7 @@ class Outcome:
         motion: the last report on a plan, with where the arm is now and what it holds.
         perceive_seconds, plan_seconds, motion_seconds, execute_seconds: wall times, summed [s];
             motion is the optimisation.
+        answers: what can be answered to the question that the message asks, if it does.
     """
 
     status: Status = Status.SUCCESS
@@ -101,3 +103,4 @@ class Outcome:
     plan_seconds: float = 0.0
     motion_seconds: float = 0.0
     execute_seconds: float = 0.0
+    answers: tuple[str, ...] = ()

@@ -12,6 +12,7 @@ from scene_graph import GraphStatus
 from ..errors import CancelledError, NoSceneGraphError, NotConfidentError, ObjectLostError
 from ..settings import Settings
 from .clock import Clock
+from .readings import Doubt, Readings
 from .scene import Scene, Sighting, scene_in
 
 #: Longest time that a request to cancel stays unnoticed while waiting [s].
@@ -32,14 +33,24 @@ class SceneWatch:
         self._settings = settings
         self._clock = clock or Clock()
         self._arrived = threading.Condition()
+        self._raw: Sighting | None = None
         self._newest: Sighting | None = None
+        self._readings = Readings()
         self._heard = 0.0
 
     def receive(self, sighting: Sighting) -> None:
         """Takes what perception reports in place of what it reported before."""
         with self._arrived:
-            self._newest, self._heard = sighting, self._clock.now()
+            self._raw, self._newest = sighting, self._readings.named(sighting)
+            self._heard = self._clock.now()
             self._arrived.notify_all()
+
+    def answer(self, doubt: Doubt, color: str) -> None:
+        """Takes it that a block in doubt has this colour, from the newest picture on."""
+        with self._arrived:
+            if self._raw is not None and self._newest is not None:
+                self._readings.answer(doubt, color, self._newest.graph.names)
+                self._newest = self._readings.named(self._raw)
 
     @property
     def newest(self) -> Sighting | None:

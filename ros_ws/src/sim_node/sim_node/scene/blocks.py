@@ -81,6 +81,7 @@ def centre_above_body(shape: str, size: Size) -> float:
 _Edges = Annotated[Size, ReadBy(read_edges), Within(LEAST_EDGE, MOST_EDGE, "m")]
 _Mass = Within(0.005, 2.0, "kg")
 _Friction = Within(0.05, 2.0)
+_Paint = Within(0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,7 @@ class Block:
             diameter thrice of a sphere, base, length and height of a prism.
         mass: [kg].
         friction: lateral, against what has a friction of 1.
+        paint: how it looks, sRGB in 0..1; None: as ``COLORS`` has its colour.
     """
 
     name: str
@@ -102,6 +104,7 @@ class Block:
     size: Size
     mass: float
     friction: float
+    paint: Size | None = None
 
     @property
     def centre_above_body(self) -> float:
@@ -116,6 +119,7 @@ class NamedBlock:
     size: _Edges | None = None
     mass: Annotated[float, _Mass] | None = None
     friction: Annotated[float, _Friction] | None = None
+    paint: Annotated[Size, _Paint] | None = None
 
 
 @dataclass(frozen=True)
@@ -159,6 +163,7 @@ class Blocks:
             own.size or (edge, edge, edge),
             mass if own.mass is None else own.mass,
             friction if own.friction is None else own.friction,
+            own.paint,
         )
 
     @property

@@ -22,6 +22,7 @@ def object_to_message(item: SceneObject) -> SceneObjectMsg:
     return SceneObjectMsg(
         name=item.name,
         color=item.color,
+        alternatives=list(item.alternatives),
         shape=item.shape,
         label=item.label,
         pose=Pose(
@@ -47,6 +48,7 @@ def object_from_message(message: SceneObjectMsg) -> SceneObject:
         label=message.label,
         coordinates=(float(message.coordinates[0]), float(message.coordinates[1])),
         confidence=message.confidence,
+        alternatives=tuple(message.alternatives),
     )
 
 
