@@ -54,9 +54,10 @@ YAWS: Final = np.radians(np.arange(-45.0, 45.0, 7.5))
 STEPS: Final = 7
 #: An outline that differs by more than this as a root mean square is of no upright block [m].
 MISFIT: Final = 0.0035
-#: What stands on a block hides of its top about as much as it is wide, less where it stands further
-#: back: at least this part; for a camera that looks down on it by this tangent or more.
-HIDES: Final = 0.66
+#: What stands on a block hides of its top half of its own width and half of that of the top, less
+#: where it stands further back: at least this part; what is behind it hides nothing. For a camera
+#: that looks down on it by this tangent or more.
+HIDES: Final = 0.45
 LEAST_STEEP: Final = 0.08
 #: Sizes that blocks can have [m].
 SMALLEST: Final = 0.012
@@ -231,7 +232,8 @@ class _Fit:
             if not inside.any() or steep < LEAST_STEEP:
                 continue
             hides = float(np.median(ends[inside, 1] - back[inside])) / self.reach.scale[upper]
-            self.behind[upper] = hides < HIDES * steep * values[upper, _WIDE]
+            width = 0.5 * (values[upper, _WIDE] + values[lower, _WIDE])
+            self.behind[upper] = hides < HIDES * steep * width
 
     def _fitted(
         self, values: Array, square: float, cube: float, alike: bool = False

@@ -38,9 +38,9 @@ ASTRAY: Final = 12.0
 UNSURE: Final = 0.65
 RAGGED: Final = 0.8
 UNLIKELY: Final = 0.4
-#: The upper and the lower part of a mask, as parts of its pixels, and by how much the channels'
-#: shares of their colours differ at most.
-PARTS: Final = 0.3
+#: The upper and the lower part of the front of a block, below its top, as parts of its pixels, and by
+#: how much the channels' shares of their colours differ at most.
+PARTS: Final = ((0.33, 0.48), (0.75, 1.0))
 OTHER_HUE: Final = 0.08
 SOURCE: Final = "what was found in camera/image_raw"
 
@@ -83,11 +83,14 @@ def find_in_rgb(observation: Observation, volume: Volume | None = None) -> Segme
 
 
 def _check_one_color(rgb: NDArray[np.uint8], segment: Segment) -> None:
-    """Raises BadImageError if the upper and the lower part of a mask have other hues."""
+    """Raises BadImageError if the upper and the lower part of a front have other hues.
+
+    The top of a block is lit by another light than its front, and may have a hue of its own.
+    """
     rows, columns = np.nonzero(segment.part)
-    low, high = np.quantile(rows, [PARTS, 1.0 - PARTS])
     hues = []
-    for part in (rows <= low, rows >= high):
+    for first, last in np.quantile(rows, PARTS):
+        part = (rows >= first) & (rows <= last)
         values = rgb[rows[part], columns[part]].astype(np.float64) + 1.0
         hues.append(np.median(values / values.sum(axis=1, keepdims=True), axis=0))
     if np.abs(hues[0] - hues[1]).max() > OTHER_HUE:
