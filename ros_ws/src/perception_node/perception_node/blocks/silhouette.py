@@ -14,7 +14,7 @@ something else covers an edge, the block reaches at least as far.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
@@ -52,6 +52,8 @@ BETTER: Final = 0.7
 #: Yaws at which the fit begins [rad].
 YAWS: Final = np.radians(np.arange(-45.0, 45.0, 7.5))
 STEPS: Final = 7
+#: No more are taken after one that changes no parameter by this [m, rad].
+SETTLED: Final = 2e-5
 #: An outline that differs by more than this as a root mean square is of no upright block [m].
 MISFIT: Final = 0.0035
 #: What stands on a block hides of its top half of its own width and half of that of the top, less
@@ -131,6 +133,20 @@ def _upper_edge(corners: Array, columns: Array) -> Array:
         rows[index, within] = begin[1] + share * (end[1] - begin[1])
     rows = np.where(np.isnan(rows), np.inf, rows).min(axis=0)
     return np.where(np.isinf(rows), np.nan, rows)
+
+
+class _Known(NamedTuple):
+    """What is known beforehand of 6N parameters p: ``normal_off @ p - right`` is its slope.
+
+    Attributes:
+        normal: of its residuals' squares, shape (6N, 6N).
+        normal_off: the same without what only damps, shape (6N, 6N).
+        right: shape (6N,).
+    """
+
+    normal: Array
+    normal_off: Array
+    right: Array
 
 
 class _Fit:
@@ -245,15 +261,16 @@ class _Fit:
             square, cube: by how much the widths, and the height and a width, of a box differ.
             alike: whether all blocks have one width.
         """
+        known = self._known(square, cube, alike)
         for _ in range(STEPS):
-            off, matrix, weights = self._linear(values, square, cube, alike)
-            normal = matrix.T @ (weights[:, None] * matrix)
-            step = np.linalg.solve(normal, -matrix.T @ (weights * off)).reshape(self.count, 6)
+            normal, right = self._normal(values, known)
+            step = np.linalg.solve(normal, -right).reshape(self.count, 6)
             limit = np.array([0.02, 0.02, 0.25, 0.02, 0.02, 0.02])
             values = values + np.clip(step, -limit, limit)
             values[:, _WIDE:_LOW] = np.clip(values[:, _WIDE:_LOW], SMALLEST, LARGEST)
-        off, matrix, weights = self._linear(values, square, cube, alike)
-        covariance = np.linalg.inv(matrix.T @ (weights[:, None] * matrix))
+            if np.abs(step).max() < SETTLED:
+                break
+        covariance = np.linalg.inv(self._normal(values, known)[0])
         squares = (self._off(values) ** 2).mean(axis=1)
         return values, np.asarray(covariance, np.float64), np.sqrt(squares) / self.reach.scale
 
@@ -306,10 +323,8 @@ class _Fit:
         off = self._seen(self._with_low(values)) - self.reach.far
         return np.where(self.reach.covered, np.minimum(off, 0.0), off)
 
-    def _linear(
-        self, values: Array, square: float, cube: float, alike: bool
-    ) -> tuple[Array, Array, Array]:
-        """Residuals, their derivatives by all 6N parameters, and their weights."""
+    def _normal(self, values: Array, known: _Known) -> tuple[Array, Array]:
+        """The normal equations' matrix and right side for all 6N parameters."""
         full = self._with_low(values)
         changed = full + np.eye(7)[:, None, :] * _CHANGE
         seen = self._seen(np.concatenate([full[None], changed]))
@@ -322,46 +337,47 @@ class _Fit:
         matrix[own, :, own, :] = slopes[:6].transpose(1, 2, 0)
         matrix[..., _HIGH] += slopes[_LOW][:, :, None] * self.under[:, None, :]
         doubt = COMMON * OUTLINE * self.reach.scale[:, None]
-        weights = active / doubt**2
-        known, derivative, sure = self._known(values, square, cube, alike)
+        flat = (matrix / doubt[..., None, None] * active[..., None, None]).reshape(count * k, -1)
+        flat_off = (off / doubt * active).ravel()
         return (
-            np.concatenate([(off * active).ravel(), known]),
-            np.concatenate([matrix.reshape(count * k, 6 * count), derivative]),
-            np.concatenate([weights.ravel(), sure]),
+            flat.T @ flat + known.normal,
+            flat.T @ flat_off + known.normal_off @ values.ravel() - known.right,
         )
 
-    def _known(
-        self, values: Array, square: float, cube: float, alike: bool
-    ) -> tuple[Array, Array, Array]:
-        """What is known beforehand, as further residuals."""
-        rows, off, sure = [], [], []
+    def _known(self, square: float, cube: float, alike: bool) -> _Known:
+        """What is known beforehand, as further residuals: sums of parameters are about values."""
+        rows, about, sure, is_pulled = [], [], [], []
 
-        def add(value: float, doubt: float, *terms: tuple[int, int, float]) -> None:
+        def add(
+            value: float, doubt: float, *terms: tuple[int, int, float], pulls: bool = True
+        ) -> None:
             row = np.zeros((self.count, 6))
             for index, column, factor in terms:
                 row[index, column] += factor
             rows.append(row.ravel())
-            off.append(value)
+            about.append(value)
             sure.append(doubt**-2)
+            is_pulled.append(pulls)
 
         for index in range(self.count):
-            item, below = values[index], int(self.below[index])
+            below = int(self.below[index])
             is_box = self.shapes[index] == BOX
             for axis in (_X, _Y):
-                add(item[axis] - self.foot[index, axis], ON_PLACE, (index, axis, 1.0))
+                add(self.foot[index, axis], ON_PLACE, (index, axis, 1.0))
                 if below >= 0:
-                    off_below = item[axis] - values[below, axis]
-                    add(off_below, ON_BLOCK, (index, axis, 1.0), (below, axis, -1.0))
-            add(0.0, YAW if is_box else 1e-3, (index, _YAW, 1.0))
-            wide, deep, high = item[_WIDE:_LOW]
-            add(wide - deep, square if is_box else 1e-4, (index, _WIDE, 1.0), (index, _DEEP, -1.0))
+                    add(0.0, ON_BLOCK, (index, axis, 1.0), (below, axis, -1.0))
+            # No yaw is likelier than another one: steps are kept short.
+            add(0.0, YAW if is_box else 1e-3, (index, _YAW, 1.0), pulls=False)
+            add(0.0, square if is_box else 1e-4, (index, _WIDE, 1.0), (index, _DEEP, -1.0))
             high_as_wide = 1e-4 if self.shapes[index] == SPHERE else cube if is_box else CUBE
-            add(high - wide, high_as_wide, (index, _HIGH, 1.0), (index, _WIDE, -1.0))
-            add(wide - 0.045, WIDTH, (index, _WIDE, 1.0))
+            add(0.0, high_as_wide, (index, _HIGH, 1.0), (index, _WIDE, -1.0))
+            add(0.045, WIDTH, (index, _WIDE, 1.0))
             if alike and index:
-                before = values[index - 1, _WIDE]
-                add(wide - before, EQUAL, (index, _WIDE, 1.0), (index - 1, _WIDE, -1.0))
-        return np.array(off), np.array(rows), np.array(sure)
+                add(0.0, EQUAL, (index, _WIDE, 1.0), (index - 1, _WIDE, -1.0))
+        matrix = np.array(rows)
+        weighted = (matrix * np.array(sure)[:, None]).T
+        pulled = matrix * np.array(is_pulled)[:, None]
+        return _Known(weighted @ matrix, weighted @ pulled, weighted @ np.array(about))
 
     def _surface(self, index: int, values: Array, covariance: Array, misfit: float) -> BlockSurface:
         x, y, yaw, wide, deep, high = (float(value) for value in values[index])

@@ -28,7 +28,7 @@ Floats = NDArray[np.float32]
 #: Labels are less than this.
 LABELS: Final = 32
 #: So many views get more things behind the row.
-CLUTTERED: Final = 0.6
+CLUTTERED: Final = 0.4
 #: So many are as from pictures of another resolution, which have so many times the pixels.
 RESAMPLED: Final = 0.5
 FINER: Final = (0.6, 1.8)
