@@ -48,7 +48,7 @@ _FEW: Final = 5
 _TINY: Final = 1e-6
 
 
-def shape_from_outline(rgb: NDArray[np.uint8], mask: Mask) -> str:
+def shape_from_outline(rgb: NDArray[np.uint8], mask: Mask, better: float = _ROUND) -> str:
     """``box``, ``cylinder`` or ``sphere``.
 
     Seen from the front a box has one or two faces, each about evenly bright; the brightness of a
@@ -59,9 +59,10 @@ def shape_from_outline(rgb: NDArray[np.uint8], mask: Mask) -> str:
     Args:
         rgb: shape (height, width, 3).
         mask: shape (height, width), not empty.
+        better: sums of squares by which a round block has to explain the brightness better.
     """
     x, light, weights = _across(rgb, mask)
-    if len(x) < _FEW or _as_box(x, light, weights) - _as_round(x, light, weights) < _ROUND:
+    if len(x) < _FEW or _as_box(x, light, weights) - _as_round(x, light, weights) < better:
         return BOX
     widths = mask.sum(axis=1)
     widths = widths[widths > 0]

@@ -30,6 +30,7 @@ from .reach import DIRECTIONS, Reach, points_around, reach_of, towers_over
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Fitted = tuple[Array, Array, Array]
 
 #: Standard deviation of where an outline is, at the block [m], and so many times as much for what
 #: neighbouring directions have in common.
@@ -56,6 +57,12 @@ STEPS: Final = 7
 SETTLED: Final = 2e-5
 #: An outline that differs by more than this as a root mean square is of no upright block [m].
 MISFIT: Final = 0.0035
+#: Light says that a block may be round where that explains it better than a box does by so much.
+AS_LIKELY: Final = 0.4
+#: By so many times the outline of a box differs more than that of a round block where it is a box
+#: all the same, rather round than a box, and round for sure; less than this [m] is no difference.
+ROUND: Final = (0.9, 1.1, 1.35)
+EXACT: Final = 1e-4
 #: What stands on a block hides of its top half of its own width and half of that of the top, less
 #: where it stands further back: at least this part; what is behind it hides nothing. For a camera
 #: that looks down on it by this tangent or more.
@@ -112,13 +119,28 @@ def measure_silhouettes(
     towers = towers_over(outlines, camera, feet)
     reach = reach_of(segments, outlines, towers, camera, feet)
     shapes = [_shape(rgb, segment.part) for segment in segments]
-    return _Fit(towers, shapes, reach, outlines, camera, feet).surfaces()
+    fit = _Fit(towers, shapes, reach, outlines, camera, feet)
+    found = fit.best()
+    rivals = [""] * len(shapes)
+    if any(shape != BOX for shape in shapes):
+        boxes = _Fit(towers, [BOX] * len(shapes), reach, outlines, camera, feet).best()
+        for index, shape in enumerate(shapes):
+            worse = float(boxes[2][index] / max(found[2][index], EXACT))
+            if shape == BOX or worse >= ROUND[2]:
+                continue
+            shapes[index], rivals[index] = (shape, BOX) if worse >= ROUND[1] else (BOX, shape)
+            if worse < ROUND[0]:
+                rivals[index] = ""
+        if fit.shapes != shapes:
+            fit = _Fit(towers, shapes, reach, outlines, camera, feet)
+            found = fit.best()
+    return fit.surfaces(found, rivals)
 
 
 def _shape(rgb: NDArray[np.uint8], part: Mask) -> str:
     left, top, width, height = cv2.boundingRect(part.astype(np.uint8))
     box = np.s_[max(0, top - 1) : top + height + 1, max(0, left - 1) : left + width + 1]
-    return shape_from_outline(rgb[box], part[box])
+    return shape_from_outline(rgb[box], part[box], AS_LIKELY)
 
 
 def _upper_edge(corners: Array, columns: Array) -> Array:
@@ -161,7 +183,7 @@ class _Fit:
         camera: PinholeCamera,
         feet: Array,
     ) -> None:
-        self.towers, self.shapes, self.reach = towers, shapes, reach
+        self.towers, self.shapes, self.reach = towers, list(shapes), reach
         self.outlines = outlines
         self.behind = np.zeros(len(shapes), bool)
         self.camera, self.feet = camera, feet
@@ -184,8 +206,8 @@ class _Fit:
             for level, index in enumerate(tower):
                 self.under[index, list(tower[:level])] = 1.0
 
-    def surfaces(self) -> tuple[BlockSurface, ...]:
-        """What was found, in the order of the segments."""
+    def best(self) -> Fitted:
+        """Parameters of all blocks, shape (N, 6); covariance; misfits, shape (N,) [m]."""
         start = self._start()
         fits = [self._fitted(start, EQUAL, EQUAL, alike=True)]
         if fits[0][2].max() > CUBES_FIT:
@@ -195,10 +217,14 @@ class _Fit:
             others = self._fitted(start, SQUARE, CUBE)
             if others[2].max() < BETTER * fits[-1][2].max():
                 fits.append(others)
-        values, covariance, misfit = fits[-1]
+        return fits[-1]
+
+    def surfaces(self, found: Fitted, rivals: Sequence[str]) -> tuple[BlockSurface, ...]:
+        """What was found, in the order of the segments."""
+        values, covariance, misfit = found
         self._mark_behind(values)
         return tuple(
-            self._surface(index, values, covariance, float(misfit[index]))
+            self._surface(index, values, covariance, float(misfit[index]), rivals[index])
             for index in range(self.count)
         )
 
@@ -379,7 +405,9 @@ class _Fit:
         pulled = matrix * np.array(is_pulled)[:, None]
         return _Known(weighted @ matrix, weighted @ pulled, weighted @ np.array(about))
 
-    def _surface(self, index: int, values: Array, covariance: Array, misfit: float) -> BlockSurface:
+    def _surface(
+        self, index: int, values: Array, covariance: Array, misfit: float, rival: str
+    ) -> BlockSurface:
         x, y, yaw, wide, deep, high = (float(value) for value in values[index])
         to_block = np.zeros((7, self.count, 6))
         to_block[[0, 1, 2, 3, 4], index, [_X, _Y, _YAW, _WIDE, _DEEP]] = 1.0
@@ -393,7 +421,6 @@ class _Fit:
             flat = flat[[0, 1, 2, 4, 3, 5, 6]]
             wide, deep = deep, wide
         doubt = flat @ covariance @ flat.T + 1e-9 * np.eye(7)
-        rival = "" if self.shapes[index] == BOX else BOX  # light alone tells them apart
         return BlockSurface(
             self.shapes[index], (x, y), yaw - turn * np.pi / 2, (wide, deep), low, low + high,
             doubt, rival=rival, upright=misfit < MISFIT, seen_low=low,

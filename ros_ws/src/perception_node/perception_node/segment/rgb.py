@@ -39,7 +39,7 @@ ASTRAY: Final = 12.0
 UNSURE: Final = 0.65
 RAGGED: Final = 0.8
 UNLIKELY: Final = 0.4
-#: The upper and the lower part of the front of a block, below its top, as parts of its pixels, and by
+#: The upper and the lower part of a block's front, below its top, as parts of its pixels, and by
 #: how much the channels' shares of their colours differ at most.
 PARTS: Final = ((0.33, 0.48), (0.75, 1.0))
 OTHER_HUE: Final = 0.08
@@ -68,8 +68,9 @@ def find_in_rgb(observation: Observation, volume: Volume | None = None) -> Segme
     if found.missed is not None:
         column, row = view.in_picture(np.array([found.missed], np.float64))[0]
         raise BadImageError(
-            f"what is seen at pixel ({column:.0f}, {row:.0f}) may be a block on a tower or something "
-            "behind it; take away what stands behind the places, or look from another side"
+            f"what is seen at pixel ({column:.0f}, {row:.0f}) may be a block on a tower or "
+            "something behind it; take away what stands behind the places, or look from another "
+            "side"
         )
     size = (observation.rgb.shape[0], observation.rgb.shape[1])
     labels = np.zeros(size, np.uint8)

@@ -113,8 +113,6 @@ def _cylinder(
     for index in range(len(turns) - 1):
         pair = [index, index + 1]
         shade = 0.75 + 0.25 * np.cos(0.5 * (turns[index] + turns[index + 1]) - lit)
-        faces.append(
-            (np.concatenate([ring[pair], ring[pair[::-1]] + [0.0, height]]), float(shade))
-        )
+        faces.append((np.concatenate([ring[pair], ring[pair[::-1]] + [0.0, height]]), float(shade)))
     top = np.concatenate([ring, -ring[1:-1]]) + [0.0, height]
     return [*faces, (top, float(rng.uniform(0.9, 1.3)))]
