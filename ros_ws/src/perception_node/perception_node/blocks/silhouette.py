@@ -61,7 +61,7 @@ MISFIT: Final = 0.0035
 AS_LIKELY: Final = 0.4
 #: By so many times the outline of a box differs more than that of a round block where it is a box
 #: all the same, rather round than a box, and round for sure; less than this [m] is no difference.
-ROUND: Final = (0.9, 1.1, 1.35)
+ROUND: Final = (0.9, 1.1, 2.0)
 EXACT: Final = 1e-4
 #: What stands on a block hides of its top half of its own width and half of that of the top, less
 #: where it stands further back: at least this part; what is behind it hides nothing. For a camera

@@ -22,7 +22,7 @@ BESIDE: Final = 0.2
 #: Of what is there at most this part is of something that was found and left out as too vague,
 VAGUE: Final = 0.03
 #: and it is a block with at most this probability.
-LIKELY: Final = 0.25
+LIKELY: Final = 0.2
 
 
 def may_be_missed(
