@@ -119,7 +119,18 @@ def test_without_depth_what_is_beside_a_block_does_not_change_its_shape(
     assert perceived.graph.relations == up_relations(TOWERS)
 
 
-@pytest.mark.parametrize(("levels", "shape"), [((8, 12), "box"), ((9, 10, 11, 12), "cylinder")])
-def test_dark_faces_are_told_from_what_is_round(levels: tuple[int, ...], shape: str) -> None:
-    rgb = np.repeat(np.repeat(np.array([levels], np.uint8), 24 // len(levels), 1), 24, 0)
-    assert shape_from_outline(rgb[..., None].repeat(3, 2), np.ones((24, 24), bool)) == shape
+@pytest.mark.parametrize(("brightest", "noise"), [(12.0, 0.0), (60.0, 1.0), (200.0, 3.0)])
+def test_one_or_two_even_faces_are_a_box_and_what_turns_from_the_light_is_round(
+    brightest: float, noise: float
+) -> None:
+    x = (np.arange(32) + 0.5) / 16.0 - 1.0
+    turned = np.arcsin(x)  # of the normal of a cylinder, lit from 0.7 rad aside
+    for name, across in (
+        ("box", np.ones(32)),
+        ("box", np.where(x < 0.3, 1.0, 0.7)),
+        ("cylinder", 0.4 + 0.6 * np.cos(turned - 0.7).clip(0.0)),
+    ):
+        light = brightest * np.tile(across, (32, 1))
+        light = light + noise * np.random.default_rng(0).normal(size=light.shape)
+        rgb = np.repeat(light[..., None].round().clip(0, 255).astype(np.uint8), 3, axis=2)
+        assert shape_from_outline(rgb, np.ones((32, 32), bool)) == name

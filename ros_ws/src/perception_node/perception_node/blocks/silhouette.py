@@ -14,7 +14,7 @@ something else covers an edge, the block reaches at least as far.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
@@ -30,6 +30,7 @@ from .reach import DIRECTIONS, Reach, points_around, reach_of, towers_over
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Fitted = tuple[Array, Array, Array]
 
 #: Standard deviation of where an outline is, at the block [m], and so many times as much for what
 #: neighbouring directions have in common.
@@ -52,11 +53,20 @@ BETTER: Final = 0.7
 #: Yaws at which the fit begins [rad].
 YAWS: Final = np.radians(np.arange(-45.0, 45.0, 7.5))
 STEPS: Final = 7
+#: No more are taken after one that changes no parameter by this [m, rad].
+SETTLED: Final = 2e-5
 #: An outline that differs by more than this as a root mean square is of no upright block [m].
 MISFIT: Final = 0.0035
-#: What stands on a block hides of its top about as much as it is wide, less where it stands further
-#: back: at least this part; for a camera that looks down on it by this tangent or more.
-HIDES: Final = 0.66
+#: Light says that a block may be round where that explains it better than a box does by so much.
+AS_LIKELY: Final = 0.4
+#: By so many times the outline of a box differs more than that of a round block where it is a box
+#: all the same, rather round than a box, and round for sure; less than this [m] is no difference.
+ROUND: Final = (0.9, 1.1, 2.0)
+EXACT: Final = 1e-4
+#: What stands on a block hides of its top half of its own width and half of that of the top, less
+#: where it stands further back: at least this part; what is behind it hides nothing. For a camera
+#: that looks down on it by this tangent or more.
+HIDES: Final = 0.45
 LEAST_STEEP: Final = 0.08
 #: Sizes that blocks can have [m].
 SMALLEST: Final = 0.012
@@ -109,13 +119,28 @@ def measure_silhouettes(
     towers = towers_over(outlines, camera, feet)
     reach = reach_of(segments, outlines, towers, camera, feet)
     shapes = [_shape(rgb, segment.part) for segment in segments]
-    return _Fit(towers, shapes, reach, outlines, camera, feet).surfaces()
+    fit = _Fit(towers, shapes, reach, outlines, camera, feet)
+    found = fit.best()
+    rivals = [""] * len(shapes)
+    if any(shape != BOX for shape in shapes):
+        boxes = _Fit(towers, [BOX] * len(shapes), reach, outlines, camera, feet).best()
+        for index, shape in enumerate(shapes):
+            worse = float(boxes[2][index] / max(found[2][index], EXACT))
+            if shape == BOX or worse >= ROUND[2]:
+                continue
+            shapes[index], rivals[index] = (shape, BOX) if worse >= ROUND[1] else (BOX, shape)
+            if worse < ROUND[0]:
+                rivals[index] = ""
+        if fit.shapes != shapes:
+            fit = _Fit(towers, shapes, reach, outlines, camera, feet)
+            found = fit.best()
+    return fit.surfaces(found, rivals)
 
 
 def _shape(rgb: NDArray[np.uint8], part: Mask) -> str:
     left, top, width, height = cv2.boundingRect(part.astype(np.uint8))
     box = np.s_[max(0, top - 1) : top + height + 1, max(0, left - 1) : left + width + 1]
-    return shape_from_outline(rgb[box], part[box])
+    return shape_from_outline(rgb[box], part[box], AS_LIKELY)
 
 
 def _upper_edge(corners: Array, columns: Array) -> Array:
@@ -132,6 +157,20 @@ def _upper_edge(corners: Array, columns: Array) -> Array:
     return np.where(np.isinf(rows), np.nan, rows)
 
 
+class _Known(NamedTuple):
+    """What is known beforehand of 6N parameters p: ``normal_off @ p - right`` is its slope.
+
+    Attributes:
+        normal: of its residuals' squares, shape (6N, 6N).
+        normal_off: the same without what only damps, shape (6N, 6N).
+        right: shape (6N,).
+    """
+
+    normal: Array
+    normal_off: Array
+    right: Array
+
+
 class _Fit:
     """All blocks of a picture, fitted at once."""
 
@@ -144,7 +183,7 @@ class _Fit:
         camera: PinholeCamera,
         feet: Array,
     ) -> None:
-        self.towers, self.shapes, self.reach = towers, shapes, reach
+        self.towers, self.shapes, self.reach = towers, list(shapes), reach
         self.outlines = outlines
         self.behind = np.zeros(len(shapes), bool)
         self.camera, self.feet = camera, feet
@@ -167,8 +206,8 @@ class _Fit:
             for level, index in enumerate(tower):
                 self.under[index, list(tower[:level])] = 1.0
 
-    def surfaces(self) -> tuple[BlockSurface, ...]:
-        """What was found, in the order of the segments."""
+    def best(self) -> Fitted:
+        """Parameters of all blocks, shape (N, 6); covariance; misfits, shape (N,) [m]."""
         start = self._start()
         fits = [self._fitted(start, EQUAL, EQUAL, alike=True)]
         if fits[0][2].max() > CUBES_FIT:
@@ -178,10 +217,14 @@ class _Fit:
             others = self._fitted(start, SQUARE, CUBE)
             if others[2].max() < BETTER * fits[-1][2].max():
                 fits.append(others)
-        values, covariance, misfit = fits[-1]
+        return fits[-1]
+
+    def surfaces(self, found: Fitted, rivals: Sequence[str]) -> tuple[BlockSurface, ...]:
+        """What was found, in the order of the segments."""
+        values, covariance, misfit = found
         self._mark_behind(values)
         return tuple(
-            self._surface(index, values, covariance, float(misfit[index]))
+            self._surface(index, values, covariance, float(misfit[index]), rivals[index])
             for index in range(self.count)
         )
 
@@ -231,7 +274,8 @@ class _Fit:
             if not inside.any() or steep < LEAST_STEEP:
                 continue
             hides = float(np.median(ends[inside, 1] - back[inside])) / self.reach.scale[upper]
-            self.behind[upper] = hides < HIDES * steep * values[upper, _WIDE]
+            width = 0.5 * (values[upper, _WIDE] + values[lower, _WIDE])
+            self.behind[upper] = hides < HIDES * steep * width
 
     def _fitted(
         self, values: Array, square: float, cube: float, alike: bool = False
@@ -243,15 +287,16 @@ class _Fit:
             square, cube: by how much the widths, and the height and a width, of a box differ.
             alike: whether all blocks have one width.
         """
+        known = self._known(square, cube, alike)
         for _ in range(STEPS):
-            off, matrix, weights = self._linear(values, square, cube, alike)
-            normal = matrix.T @ (weights[:, None] * matrix)
-            step = np.linalg.solve(normal, -matrix.T @ (weights * off)).reshape(self.count, 6)
+            normal, right = self._normal(values, known)
+            step = np.linalg.solve(normal, -right).reshape(self.count, 6)
             limit = np.array([0.02, 0.02, 0.25, 0.02, 0.02, 0.02])
             values = values + np.clip(step, -limit, limit)
             values[:, _WIDE:_LOW] = np.clip(values[:, _WIDE:_LOW], SMALLEST, LARGEST)
-        off, matrix, weights = self._linear(values, square, cube, alike)
-        covariance = np.linalg.inv(matrix.T @ (weights[:, None] * matrix))
+            if np.abs(step).max() < SETTLED:
+                break
+        covariance = np.linalg.inv(self._normal(values, known)[0])
         squares = (self._off(values) ** 2).mean(axis=1)
         return values, np.asarray(covariance, np.float64), np.sqrt(squares) / self.reach.scale
 
@@ -304,10 +349,8 @@ class _Fit:
         off = self._seen(self._with_low(values)) - self.reach.far
         return np.where(self.reach.covered, np.minimum(off, 0.0), off)
 
-    def _linear(
-        self, values: Array, square: float, cube: float, alike: bool
-    ) -> tuple[Array, Array, Array]:
-        """Residuals, their derivatives by all 6N parameters, and their weights."""
+    def _normal(self, values: Array, known: _Known) -> tuple[Array, Array]:
+        """The normal equations' matrix and right side for all 6N parameters."""
         full = self._with_low(values)
         changed = full + np.eye(7)[:, None, :] * _CHANGE
         seen = self._seen(np.concatenate([full[None], changed]))
@@ -320,48 +363,51 @@ class _Fit:
         matrix[own, :, own, :] = slopes[:6].transpose(1, 2, 0)
         matrix[..., _HIGH] += slopes[_LOW][:, :, None] * self.under[:, None, :]
         doubt = COMMON * OUTLINE * self.reach.scale[:, None]
-        weights = active / doubt**2
-        known, derivative, sure = self._known(values, square, cube, alike)
+        flat = (matrix / doubt[..., None, None] * active[..., None, None]).reshape(count * k, -1)
+        flat_off = (off / doubt * active).ravel()
         return (
-            np.concatenate([(off * active).ravel(), known]),
-            np.concatenate([matrix.reshape(count * k, 6 * count), derivative]),
-            np.concatenate([weights.ravel(), sure]),
+            flat.T @ flat + known.normal,
+            flat.T @ flat_off + known.normal_off @ values.ravel() - known.right,
         )
 
-    def _known(
-        self, values: Array, square: float, cube: float, alike: bool
-    ) -> tuple[Array, Array, Array]:
-        """What is known beforehand, as further residuals."""
-        rows, off, sure = [], [], []
+    def _known(self, square: float, cube: float, alike: bool) -> _Known:
+        """What is known beforehand, as further residuals: sums of parameters are about values."""
+        rows, about, sure, is_pulled = [], [], [], []
 
-        def add(value: float, doubt: float, *terms: tuple[int, int, float]) -> None:
+        def add(
+            value: float, doubt: float, *terms: tuple[int, int, float], pulls: bool = True
+        ) -> None:
             row = np.zeros((self.count, 6))
             for index, column, factor in terms:
                 row[index, column] += factor
             rows.append(row.ravel())
-            off.append(value)
+            about.append(value)
             sure.append(doubt**-2)
+            is_pulled.append(pulls)
 
         for index in range(self.count):
-            item, below = values[index], int(self.below[index])
+            below = int(self.below[index])
             is_box = self.shapes[index] == BOX
             for axis in (_X, _Y):
-                add(item[axis] - self.foot[index, axis], ON_PLACE, (index, axis, 1.0))
+                add(self.foot[index, axis], ON_PLACE, (index, axis, 1.0))
                 if below >= 0:
-                    off_below = item[axis] - values[below, axis]
-                    add(off_below, ON_BLOCK, (index, axis, 1.0), (below, axis, -1.0))
-            add(0.0, YAW if is_box else 1e-3, (index, _YAW, 1.0))
-            wide, deep, high = item[_WIDE:_LOW]
-            add(wide - deep, square if is_box else 1e-4, (index, _WIDE, 1.0), (index, _DEEP, -1.0))
+                    add(0.0, ON_BLOCK, (index, axis, 1.0), (below, axis, -1.0))
+            # No yaw is likelier than another one: steps are kept short.
+            add(0.0, YAW if is_box else 1e-3, (index, _YAW, 1.0), pulls=False)
+            add(0.0, square if is_box else 1e-4, (index, _WIDE, 1.0), (index, _DEEP, -1.0))
             high_as_wide = 1e-4 if self.shapes[index] == SPHERE else cube if is_box else CUBE
-            add(high - wide, high_as_wide, (index, _HIGH, 1.0), (index, _WIDE, -1.0))
-            add(wide - 0.045, WIDTH, (index, _WIDE, 1.0))
+            add(0.0, high_as_wide, (index, _HIGH, 1.0), (index, _WIDE, -1.0))
+            add(0.045, WIDTH, (index, _WIDE, 1.0))
             if alike and index:
-                before = values[index - 1, _WIDE]
-                add(wide - before, EQUAL, (index, _WIDE, 1.0), (index - 1, _WIDE, -1.0))
-        return np.array(off), np.array(rows), np.array(sure)
+                add(0.0, EQUAL, (index, _WIDE, 1.0), (index - 1, _WIDE, -1.0))
+        matrix = np.array(rows)
+        weighted = (matrix * np.array(sure)[:, None]).T
+        pulled = matrix * np.array(is_pulled)[:, None]
+        return _Known(weighted @ matrix, weighted @ pulled, weighted @ np.array(about))
 
-    def _surface(self, index: int, values: Array, covariance: Array, misfit: float) -> BlockSurface:
+    def _surface(
+        self, index: int, values: Array, covariance: Array, misfit: float, rival: str
+    ) -> BlockSurface:
         x, y, yaw, wide, deep, high = (float(value) for value in values[index])
         to_block = np.zeros((7, self.count, 6))
         to_block[[0, 1, 2, 3, 4], index, [_X, _Y, _YAW, _WIDE, _DEEP]] = 1.0
@@ -375,7 +421,6 @@ class _Fit:
             flat = flat[[0, 1, 2, 4, 3, 5, 6]]
             wide, deep = deep, wide
         doubt = flat @ covariance @ flat.T + 1e-9 * np.eye(7)
-        rival = "" if self.shapes[index] == BOX else BOX  # light alone tells them apart
         return BlockSurface(
             self.shapes[index], (x, y), yaw - turn * np.pi / 2, (wide, deep), low, low + high,
             doubt, rival=rival, upright=misfit < MISFIT, seen_low=low,

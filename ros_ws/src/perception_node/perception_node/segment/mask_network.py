@@ -155,7 +155,12 @@ def save_weights(network: MaskNetwork, path: Path, metadata: Mapping[str, str]) 
 
 
 def load_weights(path: Path = DEFAULT_WEIGHTS) -> MaskNetwork:
-    """A network with the weights of a file, ready for inference only.
+    """A network with the weights of a file, ready for inference only; raises WeightsError."""
+    return read_weights(path).for_inference()
+
+
+def read_weights(path: Path) -> MaskNetwork:
+    """A network with the weights of a file, as it was when they were saved.
 
     Raises:
         WeightsError: the file is missing, damaged, or was not made by :func:`save_weights`.
@@ -182,7 +187,7 @@ def load_weights(path: Path = DEFAULT_WEIGHTS) -> MaskNetwork:
         raise WeightsError(
             f"weights file {path} holds values that are not finite; {_RETRAIN}", path
         )
-    return network.for_inference()
+    return network
 
 
 def _layer(inputs: int, outputs: int, stride: int = 1) -> tuple[nn.Module, ...]:

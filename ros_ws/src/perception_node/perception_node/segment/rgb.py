@@ -17,6 +17,7 @@ from perception_node.observation import Observation
 
 from .background import stands_behind
 from .front_view import FrontView
+from .missed import may_be_missed
 from .segments import Segment, Segments, largest_part
 from .volume import Volume
 
@@ -39,9 +40,9 @@ ASTRAY: Final = 12.0
 UNSURE: Final = 0.65
 RAGGED: Final = 0.8
 UNLIKELY: Final = 0.4
-#: The upper and the lower part of a mask, as parts of its pixels, and by how much the channels'
-#: shares of their colours differ at most.
-PARTS: Final = 0.3
+#: The upper and the lower part of a block's front, below its top, as parts of its pixels, and by
+#: how much the channels' shares of their colours differ at most.
+PARTS: Final = ((0.33, 0.48), (0.75, 1.0))
 OTHER_HUE: Final = 0.08
 SOURCE: Final = "what was found in camera/image_raw"
 
@@ -50,7 +51,8 @@ def find_in_rgb(observation: Observation, volume: Volume | None = None) -> Segme
     """The blocks that colour shows over the places.
 
     Raises:
-        BadImageError: if camera or places are unknown, or not seen from the front.
+        BadImageError: if camera or places are unknown, or not seen from the front; if there may be
+            a block that was not found.
         WeightsError: if the network's weights cannot be read.
     """
     if observation.camera is None:
@@ -64,6 +66,13 @@ def find_in_rgb(observation: Observation, volume: Volume | None = None) -> Segme
         )
     view = FrontView.of(observation.camera, volume)
     found = find_in_view(view, view.taken(observation.rgb), network())
+    if found.missed is not None:
+        column, row = view.in_picture(np.array([found.missed], np.float64))[0]
+        raise BadImageError(
+            f"what is seen at pixel ({column:.0f}, {row:.0f}) may be a block on a tower or "
+            "something behind it; take away what stands behind the places, or look from another "
+            "side"
+        )
     size = (observation.rgb.shape[0], observation.rgb.shape[1])
     labels = np.zeros(size, np.uint8)
     best = np.zeros(size, np.float32)
@@ -84,11 +93,14 @@ def find_in_rgb(observation: Observation, volume: Volume | None = None) -> Segme
 
 
 def _check_one_color(rgb: NDArray[np.uint8], segment: Segment) -> None:
-    """Raises BadImageError if the upper and the lower part of a mask have other hues."""
+    """Raises BadImageError if the upper and the lower part of a front have other hues.
+
+    The top of a block is lit by another light than its front, and may have a hue of its own.
+    """
     rows, columns = pixels_of(segment.part)
-    low, high = np.quantile(rows, [PARTS, 1.0 - PARTS])
     hues = []
-    for part in (rows <= low, rows >= high):
+    for first, last in np.quantile(rows, PARTS):
+        part = (rows >= first) & (rows <= last)
         values = rgb[rows[part], columns[part]].astype(np.float64) + 1.0
         hues.append(np.median(values / values.sum(axis=1, keepdims=True), axis=0))
     if np.abs(hues[0] - hues[1]).max() > OTHER_HUE:
@@ -107,7 +119,7 @@ def network() -> MaskNetwork:
     return load_weights()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Field:
     """How sure it is that pixels of a part of a view are of one block: positive where they are.
 
@@ -158,10 +170,17 @@ class Field:
 
 @dataclass(frozen=True)
 class FoundInView:
-    """What was found in a view: one field for each block, and what hides the places, (h, w)."""
+    """What was found in a view.
+
+    Attributes:
+        fields: one for each block.
+        hides: the places, and is no block, shape (h, w).
+        missed: where a block may be that was not found, column and row, or None.
+    """
 
     fields: tuple[Field, ...]
     hides: Mask
+    missed: tuple[int, int] | None = None
 
 
 def find_in_view(view: FrontView, rgb: NDArray[np.uint8], network: MaskNetwork) -> FoundInView:
@@ -174,12 +193,18 @@ def find_in_view(view: FrontView, rgb: NDArray[np.uint8], network: MaskNetwork) 
 
     classes, middles = predict(network, rgb, view.feet, view.aside, view.steepness)
     surety = classes[BLOCK] - np.maximum(*np.delete(classes, BLOCK, axis=0))
-    fields = tuple(field for field in instances(surety, middles) if not field.is_vague)
-    behind = stands_behind([field.mask(surety.shape) for field in fields], view, rgb, surety)
-    return FoundInView(
-        tuple(field for field, away in zip(fields, behind) if not away),
-        classes.argmax(axis=0) == BEFORE,
+    found = instances(surety, middles)
+    masks = {field: field.mask(surety.shape) for field in found}
+    clear = [field for field in found if not field.is_vague]
+    behind = stands_behind([masks[field] for field in clear], view, rgb, surety)
+    blocks = tuple(field for field, away in zip(clear, behind) if not away)
+    missed = may_be_missed(
+        [masks[field] for field in blocks],
+        [masks[field] for field in found if field not in clear],
+        [masks[field] for field, away in zip(clear, behind) if away],
+        classes[BLOCK],
     )
+    return FoundInView(blocks, classes.argmax(axis=0) == BEFORE, missed)
 
 
 def instances(surety: Floats, middles: Floats) -> tuple[Field, ...]:

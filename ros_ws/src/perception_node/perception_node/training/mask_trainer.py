@@ -5,13 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import torch
 from torch import Tensor
 from torch.nn import functional
 
-from perception_node.segment.mask_network import BLOCK, MaskNetwork, where
+from perception_node.segment.mask_network import BLOCK, MaskNetwork, read_weights, where
 
 from .mask_views import Views, shown
 from .run import Stateful, TrainingRun
@@ -31,6 +32,7 @@ class MaskTraining:
         bfloat16: autocast of the network; slower where the processor cannot multiply it.
         checkpoint_every: steps between checkpoints.
         seed: of weights, batches and paint.
+        start: weights to begin with, the path of a file; empty: random ones.
     """
 
     steps: int = 2200
@@ -42,16 +44,22 @@ class MaskTraining:
     bfloat16: bool = True
     checkpoint_every: int = 200
     seed: int = 0
+    start: str = ""
 
 
 class MaskTrainer(TrainingRun[float]):
-    """One training run; each step tells its loss."""
+    """One training run; each step tells its loss.
+
+    Raises:
+        WeightsError: if it is to begin with weights that cannot be read.
+    """
 
     def __init__(self, views: Views, config: MaskTraining) -> None:
         super().__init__(config, config.steps)
         self.views = views
         torch.manual_seed(config.seed)
-        self.network = MaskNetwork().to(memory_format=torch.channels_last)
+        begun = read_weights(Path(config.start)) if config.start else MaskNetwork()
+        self.network = begun.to(memory_format=torch.channels_last)
         self.optimizer = torch.optim.AdamW(
             self.network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay
         )

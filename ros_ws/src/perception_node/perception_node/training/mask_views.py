@@ -21,10 +21,17 @@ from perception_node.errors import DatasetError
 from perception_node.segment.mask_network import BEFORE, BLOCK, FREE, REACH
 from scene_graph import COLORS
 
+from .clutter import with_clutter
+
 Floats = NDArray[np.float32]
 
 #: Labels are less than this.
 LABELS: Final = 32
+#: So many views get more things behind the row.
+CLUTTERED: Final = 0.4
+#: So many are as from pictures of another resolution, which have so many times the pixels.
+RESAMPLED: Final = 0.5
+FINER: Final = (0.6, 1.8)
 _PALETTE: Final = np.array(list(COLORS.values()), np.float32)
 
 
@@ -116,7 +123,12 @@ def shown(views: Views, index: int, size: int, rng: np.random.Generator) -> Show
     # Calibrations are not exact.
     feet = feet + np.float32(rng.normal(0.0, 1.5))
     aside = aside + np.float32(rng.normal(0.0, 1.5))
-    painted = _photographed(_repainted(rgb, labels, rng), rng)
+    painted = _repainted(rgb, labels, rng)
+    if rng.random() < CLUTTERED:
+        place = (feet, aside, float(views.steepness[index]))
+        color = _colors_around(painted, labels, rng)
+        painted = with_clutter(painted, labels, classes == BEFORE, place, color, rng)
+    painted = _photographed(painted, rng)
     return Shown(
         np.ascontiguousarray(painted.transpose(2, 0, 1)),
         np.ascontiguousarray(classes),
@@ -207,6 +219,14 @@ def _color(
     return _any_color(rng)
 
 
+def _colors_around(
+    picture: Floats, labels: NDArray[np.uint8], rng: np.random.Generator
+) -> Callable[[], Floats]:
+    """What gives things colours, as blocks have them; some those of the blocks of a picture."""
+    given = [picture[labels == label].mean(axis=0) for label in np.unique(labels[labels > 0])]
+    return lambda: _color(given, picture, labels == 0, rng)
+
+
 def _any_color(rng: np.random.Generator) -> Floats:
     saturation, value = rng.uniform(0.0, 1.0) ** 0.7, rng.uniform(0.15, 1.0)
     offsets = np.array([0.0, 2.0, 4.0])
@@ -261,7 +281,7 @@ def _texture(shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
 
 
 def _photographed(picture: Floats, rng: np.random.Generator) -> Floats:
-    """As a camera takes it: light, shadows, blur, grain."""
+    """As a camera takes it, of this resolution or another one: light, shadows, blur, grain."""
     height, width = picture.shape[:2]
     picture = picture * rng.uniform(0.85, 1.15, 3).astype(np.float32)
     picture = picture * np.float32(rng.uniform(0.5, 1.15))
@@ -269,7 +289,21 @@ def _photographed(picture: Floats, rng: np.random.Generator) -> Floats:
         soft = rng.uniform(0.6, 1.3, (3, 4)).astype(np.float32)
         uneven = cv2.resize(soft, (width, height), interpolation=cv2.INTER_CUBIC)
         picture = picture * np.asarray(uneven, np.float32)[..., None]
-    if rng.random() < 0.5:
+    if rng.random() < RESAMPLED:
+        finer = rng.uniform(*FINER)
+        size = (round(finer * width), round(finer * height))
+        taken = _with_grain(np.asarray(cv2.resize(picture, size), np.float32), rng)
+        if finer > 1.0:
+            taken = np.asarray(cv2.GaussianBlur(taken, (0, 0), 0.4 * finer), np.float32)
+        picture = np.asarray(cv2.resize(taken, (width, height)), np.float32)
+    else:
+        picture = _with_grain(picture, rng)
+    return np.clip(picture, 0.0, 1.0).astype(np.float32)
+
+
+def _with_grain(picture: Floats, rng: np.random.Generator) -> Floats:
+    """What lens, sensor and file do to a picture."""
+    if rng.random() < 0.6:
         blurred = cv2.GaussianBlur(picture, (0, 0), rng.uniform(0.3, 1.2))
         picture = np.asarray(blurred, np.float32)
     picture = np.clip(picture, 0.0, 1.0)
@@ -278,9 +312,9 @@ def _photographed(picture: Floats, rng: np.random.Generator) -> Floats:
     if rng.random() < 0.6:
         noise = rng.standard_normal(picture.shape, np.float32)
         picture = picture + np.float32(rng.uniform(0.0, 0.05)) * noise
-    if rng.random() < 0.2:
+    if rng.random() < 0.3:
         coded = np.clip(255.0 * picture, 0, 255).astype(np.uint8)
         quality = [cv2.IMWRITE_JPEG_QUALITY, int(rng.integers(50, 96))]
         read = cv2.imdecode(cv2.imencode(".jpg", coded, quality)[1], cv2.IMREAD_COLOR)
         picture = np.asarray(read, np.float32) / 255.0
-    return np.clip(picture, 0.0, 1.0).astype(np.float32)
+    return picture
