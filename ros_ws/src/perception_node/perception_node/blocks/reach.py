@@ -145,9 +145,9 @@ def _contacts(
     left, top, width, height = cv2.boundingRect(part.astype(np.uint8))
     box = np.s_[max(0, top - gap) : top + height + gap, max(0, left - gap) : left + width + gap]
     corner = np.array([box[1].start, box[0].start])
-    mine = part[box].astype(np.uint8)
+    mine = part[box]
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * gap + 1,) * 2)
-    around = np.where(cv2.dilate(mine, disc) > 0, numbers[box], -1)
+    around = np.where(cv2.dilate(mine.astype(np.uint8), disc) > 0, numbers[box], -1)
     rows, columns = pixels_of(mine)
     middle = corner + [columns.mean(), rows.mean()]
     for other in np.unique(around):
