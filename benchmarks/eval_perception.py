@@ -101,7 +101,7 @@ def _look(name: str, numbers: Iterable[int]) -> list[Answer]:
 def _with_tuples(entry: dict[str, Any]) -> dict[str, Any]:
     errors = tuple(tuple(error) for error in entry["errors"])
     named = tuple(tuple(block) for block in entry["named"])
-    tuples = {name: tuple(entry[name]) for name in ("iou", "baselines", "evidence")}
+    tuples = {name: tuple(entry[name]) for name in ("iou", "baselines", "evidence", "place_errors")}
     return {**entry, **tuples, "errors": errors, "named": named}
 
 

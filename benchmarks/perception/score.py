@@ -18,6 +18,7 @@ from results_file import Row, wilson_interval
 
 from perception.color_clusters import find_by_color
 from perception.damages import Shot
+from perception.found_truth import on_found_places, place_errors
 from perception.hidden_truth import is_partly_right
 from perception.readings import reading_rows, relations_of
 from perception.scenes import Drawn
@@ -33,7 +34,7 @@ from perception_node import (
 )
 from perception_node.segment import RGB
 from perception_node.visual_module.coordinates import Locator
-from scene_graph import UNKNOWN, GraphStatus, SceneGraph, SceneObject
+from scene_graph import UNKNOWN, GraphStatus, Relation, SceneGraph, SceneObject
 from sim_node import Frame, World, random_arrangement, sense, true_scene_graph
 
 #: Every set is held to no more than this share of graphs that are accepted and wrong.
@@ -65,6 +66,7 @@ class Answer:
         hides: whether it says that blocks hide others.
         readings: how many graphs it may be, if it is accepted or in doubt about some names.
         covered: whether the right one is among them.
+        place_errors: of places that were found in a confident graph, where stacks stand [mm].
     """
 
     seed: int
@@ -82,6 +84,7 @@ class Answer:
     hides: bool = False
     readings: int = 0
     covered: bool = False
+    place_errors: tuple[float, ...] = ()
 
 
 def answer_of(drawn: Drawn, item: PictureSet, locator: Locator, world: World) -> Answer:
@@ -121,13 +124,23 @@ def answer_to(
 
     Blocks by name are left out, and where blocks hide others whether that is right.
     """
-    feet = tuple(place.position_world for place in truth.places)
-    perception = Perception(
-        locator, PerceptionConfig(mask_source=item.mask_source, stack_positions=feet)
+    config = PerceptionConfig(
+        mask_source=item.mask_source,
+        stack_positions=tuple(place.position_world for place in truth.places),
     )
+    right: frozenset[Relation] | None = truth.relations
+    if item.found is not None:
+        search = replace(config.search, count=item.found)
+        config = replace(config, stack_positions=(), search=search)
+    perception = Perception(locator, config)
     start = time.perf_counter()
-    seen = perception.perceive(observation)
+    if item.found is None:
+        seen = perception.perceive(observation)
+    else:
+        _, seen = perception.find_places(observation)
     seconds = time.perf_counter() - start
+    if item.found is not None:
+        right = on_found_places(truth, seen.graph)
     others = [
         other.perceive(observation).graph.relations
         for other in _baselines(item, perception).values()
@@ -138,7 +151,7 @@ def answer_to(
     readings = relations_of(seen.graph) if doubtful else [seen.graph.relations]
     answer = Answer(
         seed,
-        seen.graph.relations == truth.relations,
+        seen.graph.relations == right,
         confident,
         seen.status.name,
         seen.message,
@@ -150,7 +163,8 @@ def answer_to(
         evidence=seen.evidence,
         hides=hides,
         readings=len(readings) if confident or doubtful else 0,
-        covered=truth.relations in readings,
+        covered=right in readings,
+        place_errors=place_errors(truth, seen.graph) if confident and item.found is not None else (),
     )
     return answer, seen
 
@@ -258,6 +272,12 @@ def rows_of(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
     ]  # fmt: skip
     if hiding := sum(answer.hides for answer in answers):
         rows.append(Row(item.what, "of these with hidden places", hiding / n, "", n))
+    if off := [error for answer in answers for error in answer.place_errors]:
+        rows += [
+            _error_row(item, "error of places, median", float(np.median(off)), None, n),
+            _error_row(item, "error of places, 99th percentile", float(np.percentile(off, 99)),
+                       None, n),
+        ]  # fmt: skip
     errors = np.array([error for answer in answers for error in answer.errors])
     if not len(errors):
         return rows

@@ -33,6 +33,23 @@ class StabilityLimits:
 
 
 @dataclass(frozen=True)
+class PlaceSearch:
+    """How places are found where they are not given, see :mod:`.places.found`.
+
+    Attributes:
+        count: of the places, the free ones included; 0: as many as there are stacks.
+        gap: free places are this far from any other: the hand needs room [m].
+        reach: least and greatest distance of a place from the arm's axis, the z axis of world [m].
+        table_height: z of the table [m].
+    """
+
+    count: int = 0
+    gap: float = 0.12
+    reach: tuple[float, float] = (0.30, 0.75)
+    table_height: float = 0.0
+
+
+@dataclass(frozen=True)
 class PerceptionConfig:
     """What perception knows of the scene, and what it accepts.
 
@@ -40,6 +57,7 @@ class PerceptionConfig:
         mask_source: where the blocks' pixels come from, see ``segment.SEGMENTERS``.
         stack_positions: centres of the m places on the table, from the left of the image [m]; none
             where the places are unknown, which leaves left-relations instead of bases.
+        search: how places are found where that is asked for.
         min_confidence: least confidence of a confident graph (A.2.5).
         max_hidden: greatest hidden share of the column over a place.
         column_half_width, column_height: of the columns in which blocks can stand [m].
@@ -50,6 +68,7 @@ class PerceptionConfig:
 
     mask_source: str = RGBD
     stack_positions: Points = ROW_OF_THREE
+    search: PlaceSearch = field(default_factory=PlaceSearch)
     min_confidence: float = 0.6
     max_hidden: float = 0.005
     column_half_width: float = 0.035

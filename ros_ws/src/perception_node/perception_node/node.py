@@ -16,6 +16,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from sensor_msgs.msg import CameraInfo, Image
 from std_msgs.msg import Header
+from std_srvs.srv import Trigger
 from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import ImageToSceneGraph
 from tamp_runtime.messages.images import (
@@ -42,6 +43,7 @@ from scene_graph import GraphStatus
 
 from .alike import Alike
 from .calibration import Calibration, LensModel
+from .config import PerceptionConfig
 from .continuity import Continuity
 from .conversions import (
     frame_pose_from_message,
@@ -53,7 +55,7 @@ from .drawing import draw_scene_graph
 from .errors import BadImageError, DatasetError
 from .frame_pairing import FramePairing, StampedSet
 from .observation import Observation
-from .parameters import PARAMETERS, config_from_parameters
+from .parameters import FOUND, PARAMETERS, config_from_parameters
 from .pipeline import Perceived, Perception
 from .segment import RGB, RGBD, SEGMENTATION_TOPIC
 from .segment.rgb import network
@@ -107,6 +109,8 @@ class PerceptionNode(Node):
         diagnostics (diagnostic_msgs/DiagnosticArray): that it lives; a second one is noticed
     Services:
         image_to_scene_graph (tamp_interfaces/ImageToSceneGraph): interprets a goal image
+        find_places (std_srvs/Trigger): finds the places anew in the newest picture, where the
+            parameter places is found; where that fails they stay as they are. Not while a task runs
     """
 
     def __init__(self, **kwargs: Any) -> None:
@@ -128,6 +132,7 @@ class PerceptionNode(Node):
         self._calibration = Calibration(self._values["rectified"], self._values["world_frame"])
         self._continuity = Continuity()
         self._alike = Alike()
+        self._newest: Observation | None = None
         self._recorder = _recorder(self._values["record"])
         self._status: GraphStatus | None = None
         self._last_image = 0.0
@@ -135,7 +140,8 @@ class PerceptionNode(Node):
         self._create_interfaces()
         self.get_logger().info(
             f"masks from {self._values['mask_source']}, weights {weights} "
-            f"(backbone {module.backbone}), {len(self._perception.config.stack_positions)} places"
+            f"(backbone {module.backbone}), "
+            + ("places to be found" if self._finds else _told(self._perception.config))
         )
 
     def _create_interfaces(self) -> None:
@@ -159,6 +165,7 @@ class PerceptionNode(Node):
                 TFMessage, "/tf_static", self._on_frames, STATUS, callback_group=frames
             )
         self.create_timer(0.5, self._on_timer, callback_group=frames)
+        self.create_service(Trigger, "find_places", self._on_find_places, callback_group=frames)
         self.create_service(
             ImageToSceneGraph,
             "image_to_scene_graph",
@@ -171,7 +178,10 @@ class PerceptionNode(Node):
 
     def _parameters_changed(self, values: dict[str, Any]) -> None:
         self._values = {**self._values, **values}
-        self._perception = self._perception.configured(config_from_parameters(self._values))
+        config = config_from_parameters(self._values)
+        if self._finds:  # those that were found stay
+            config = replace(config, stack_positions=self._perception.config.stack_positions)
+        self._perception = self._perception.configured(config)
 
     def _on_extrinsics(self, message: TransformStamped) -> None:
         self._calibration.place(frame_pose_from_message(message))
@@ -192,6 +202,22 @@ class PerceptionNode(Node):
             self._interpret(frame)
 
         return receive
+
+    def _on_find_places(
+        self, request: Trigger.Request, response: Trigger.Response
+    ) -> Trigger.Response:
+        if not self._finds:
+            response.message = "the places are given by stack_positions; set places to found"
+        elif self._newest is None or time.perf_counter() - self._last_image > SILENCE:
+            response.message = f"no picture came within {SILENCE:g} s; check the camera"
+        else:
+            before = self._perception
+            perceived = self._find_places(self._newest)
+            response.success = self._perception is not before
+            response.message = perceived.message
+            if response.success:
+                response.message = _told(self._perception.config)
+        return response
 
     def _on_timer(self) -> None:
         """Says so when images arrive that never make a frame."""
@@ -258,7 +284,11 @@ class PerceptionNode(Node):
 
     def _perceive(self, observation: Observation, stamp: int, unchanged: float) -> Perceived:
         """Interprets an observation in the light of those before it; see :class:`Continuity`."""
-        perceived = self._perception.perceive(observation)
+        self._newest = observation
+        if self._finds and not self._perception.places.places:
+            perceived = self._find_places(observation)
+        else:
+            perceived = self._perception.perceive(observation)
         self._record(observation, perceived)
         graph = perceived.graph
         if problem := self._continuity.calibration_problem(observation, graph, stamp):
@@ -272,6 +302,18 @@ class PerceptionNode(Node):
                 "to the last bit"
             )
             perceived = replace(perceived, message=perceived.message + hint)
+        return perceived
+
+    @property
+    def _finds(self) -> bool:
+        return bool(self._values["places"] == FOUND)
+
+    def _find_places(self, observation: Observation) -> Perceived:
+        """Interprets an observation with the places that are found in it, and keeps these."""
+        found, perceived = self._perception.find_places(observation)
+        if found is not self._perception:
+            self._perception = found
+            self.get_logger().info(f"found {_told(found.config)}")
         return perceived
 
     def _record(self, observation: Observation, perceived: Perceived) -> None:
@@ -318,6 +360,12 @@ class PerceptionNode(Node):
                 self.get_logger().warning(f"{perceived.status.name}: {perceived.message}")
         if self._markers.get_subscription_count():
             self._markers.publish(markers_from_graph(perceived.graph, header))
+
+
+def _told(config: PerceptionConfig) -> str:
+    """The places, in words."""
+    spots = [f"({x:.3f}, {y:.3f})" for x, y, _ in config.stack_positions]
+    return f"{len(spots)} places at {', '.join(spots)} m"
 
 
 def _recorder(folder: str) -> Recorder | None:

@@ -12,14 +12,19 @@ from typing import Any, Final
 import numpy as np
 from tamp_runtime.parameters import ParameterSpec
 
-from .config import PerceptionConfig
+from .config import PerceptionConfig, PlaceSearch
 from .places import Points
-from .segment import SEGMENTERS
+from .segment import RGB, SEGMENTERS
+
+#: Where the places come from, as the parameter ``places`` has it.
+GIVEN: Final = "given"
+FOUND: Final = "found"
 
 #: Least distance between two places [m].
 MIN_GAP: Final = 0.02
 
 _DEFAULT: Final = PerceptionConfig()
+_SEARCH: Final = _DEFAULT.search
 
 
 def positions_from_parameter(values: Iterable[float]) -> Points:
@@ -47,6 +52,20 @@ def _mask_source_problem(value: Any) -> str:
     if value in SEGMENTERS:
         return ""
     return f"mask_source is {value!r}; there are {', '.join(SEGMENTERS)}"
+
+
+def _places_problem(value: Any) -> str:
+    """One of given, found."""
+    if value in (GIVEN, FOUND):
+        return ""
+    return f"places is {value!r}; there are {GIVEN}, {FOUND}"
+
+
+def _reach_problem(values: Any) -> str:
+    """Least and greatest distance."""
+    if len(values) == 2 and values[0] < values[1]:
+        return ""
+    return f"place_reach is {list(values)}; needs the least distance and the greatest"
 
 
 PARAMETERS: Final = (
@@ -110,6 +129,43 @@ PARAMETERS: Final = (
         minimum=-10.0,
         maximum=10.0,
         check=_positions_problem,
+    ),
+    ParameterSpec(
+        "places",
+        GIVEN,
+        "where the places come from: given (stack_positions) or found: in the first picture whose "
+        "graph can be planned on, wherever a stack stands, and again when the service find_places "
+        "is called; in between they stay. Of stack_positions only the height of the table is used "
+        "then. Whatever in reach looks like a block counts as a stack",
+        read_only=True,
+        check=_places_problem,
+    ),
+    ParameterSpec(
+        "place_count",
+        _SEARCH.count,
+        "how many places there are to be where they are found; beside the stacks free ones are "
+        "laid, on the line through them (of one stack: across the view), each at place_gap from "
+        "the nearest other one, or as little more as there is room, in reach, in the picture, and "
+        "where nothing but table is seen; 0: as many as there are stacks, none of them free",
+        minimum=0,
+        maximum=8,
+    ),
+    ParameterSpec(
+        "place_gap",
+        _SEARCH.gap,
+        "how far free places are from others, so that the hand has room; stacks that are found may "
+        "be nearer to one another by 15 mm [m]",
+        minimum=0.06,
+        maximum=1.0,
+    ),
+    ParameterSpec(
+        "place_reach",
+        list(_SEARCH.reach),
+        "least and greatest distance from the arm's axis, the z axis of the world, at which places "
+        "are found [m]",
+        minimum=0.0,
+        maximum=5.0,
+        check=_reach_problem,
     ),
     ParameterSpec(
         "min_confidence",
@@ -181,10 +237,27 @@ PARAMETERS: Final = (
 
 
 def config_from_parameters(values: Mapping[str, Any]) -> PerceptionConfig:
-    """The algorithm's configuration for a full set of parameter values."""
+    """The algorithm's configuration for a full set of parameter values.
+
+    Where places are to be found it has none.
+
+    Raises:
+        ValueError: if places cannot be found from this source of masks.
+    """
+    positions = positions_from_parameter(values["stack_positions"])
+    to_find = values["places"] == FOUND
+    if to_find and values["mask_source"] == RGB:
+        raise ValueError("places are found in depth, which mask_source rgb has not; set it to rgbd")
+    nearest, farthest = values["place_reach"]
     return PerceptionConfig(
         mask_source=values["mask_source"],
-        stack_positions=positions_from_parameter(values["stack_positions"]),
+        stack_positions=() if to_find else positions,
+        search=PlaceSearch(
+            count=values["place_count"],
+            gap=values["place_gap"],
+            reach=(nearest, farthest),
+            table_height=float(np.median([z for _, _, z in positions] or [0.0])),
+        ),
         min_confidence=values["min_confidence"],
         max_hidden=values["max_hidden"],
         column_half_width=values["column_half_width"],

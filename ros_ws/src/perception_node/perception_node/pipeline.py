@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from .alignment import aligned
 from .blocks import centres, find_blocks, measure
 from .config import PerceptionConfig
 from .covered import Seen, measure_seen, poorly_seen, uncovered
-from .errors import BadImageError, PerceptionError
+from .errors import BadImageError, PerceptionError, PlacesError
 from .fallen import find_fallen, with_fallen
 from .graph import build_graph
 from .hiding import Hidden, find_hidden
@@ -22,6 +23,7 @@ from .name_sets import load_name_sets
 from .names import name_blocks
 from .observation import Observation
 from .places import Places, Points, RowOfPlaces, TwoRows
+from .places.found import find_places, search_volume
 from .places.occlusion import find_occlusion
 from .places.table import table_problem
 from .probability import evidence, load_parameters, probability
@@ -39,6 +41,11 @@ from .sight import sight_problem
 from .strays import find_strays, with_strays
 from .verdict import Verdict, judge, judge_empty, judge_fallen, with_grain, with_stray
 from .visual_module.coordinates import Locator
+
+#: What is said where places are looked for and no block is seen.
+NOTHING_STANDS: Final = (
+    "no block is seen in reach, so that no places are found; put one wherever a stack shall be"
+)
 
 
 @dataclass(frozen=True)
@@ -105,6 +112,33 @@ class Perception:
         except PerceptionError as error:
             return self.rejected(GraphStatus.BAD_IMAGE, str(error))
 
+    def find_places(self, observation: Observation) -> tuple[Perception, Perceived]:
+        """The same parts with the places at which stacks are seen, and what is seen with them.
+
+        Itself where there are none, or where what is seen cannot be planned on.
+        """
+        try:
+            observation = observation.checked()
+            found = self.configured(replace(self.config, stack_positions=self._found(observation)))
+        except PlacesError as error:
+            return self, self.rejected(GraphStatus.NO_PLACES, str(error))
+        except PerceptionError as error:
+            return self, self.rejected(GraphStatus.BAD_IMAGE, str(error))
+        if not found.places.places:
+            return self, self.rejected(GraphStatus.NO_OBJECTS, NOTHING_STANDS)
+        perceived = found.perceive(observation)
+        return (found if perceived.status.sees_all else self), perceived
+
+    def _found(self, observation: Observation) -> Points:
+        """Raises PerceptionError."""
+        if observation.depth is None or observation.camera is None:
+            raise BadImageError("places are found in depth only; publish it, or set places to given")
+        observation.check_values()
+        volume = search_volume(self.config.search, self.config.column_height)
+        observation = self._aligned(observation, volume)
+        surfaces = measure(observation, self._segments(observation, volume))
+        return find_places(observation, surfaces, self.config.search, volume)
+
     def rejected(self, status: GraphStatus, message: str) -> Perceived:
         """An empty graph with the reason for it."""
         graph = SceneGraph((), frozenset(), self.places.places, 0.0)
@@ -114,8 +148,8 @@ class Perception:
         """Raises PerceptionError if the observation cannot be used."""
         config, places = self.config, self.places.seen_by(observation.camera)
         observation.check_values()
-        taken, observation = observation, self._aligned(observation)
-        segments = self._segments(observation)
+        taken, observation = observation, self._aligned(observation, self._volume)
+        segments = self._segments(observation, self._volume)
         check_segments(taken.rgb, segments, observation.depth)
 
         def refused(verdict: Verdict) -> Perceived:
@@ -187,19 +221,19 @@ class Perception:
             )
         return Seen(segments, measure(observation, segments, places.places))
 
-    def _aligned(self, observation: Observation) -> Observation:
+    def _aligned(self, observation: Observation, volume: Volume | None) -> Observation:
         """With edges where they are, where the places are seen and depth can be moved to colour."""
-        if self._volume is None or observation.camera is None or observation.depth is None:
+        if volume is None or observation.camera is None or observation.depth is None:
             return observation
-        box = self._volume.seen_by(observation.camera)
+        box = volume.seen_by(observation.camera)
         return observation if box is None else aligned(observation, box)
 
-    def _segments(self, observation: Observation) -> Segments:
+    def _segments(self, observation: Observation, volume: Volume | None) -> Segments:
         segmenter = self.segmenter or SEGMENTERS[self.config.mask_source]
         alone = self.config.mask_source == RGB and observation.labels is None
         if observation.depth is None and self.segmenter is None and not alone:
             segmenter = given_labels  # a goal image, drawn by hand
-        segments = segmenter(observation, self._volume)
+        segments = segmenter(observation, volume)
         if segments.label_image.shape != observation.rgb.shape[:2]:
             raise BadImageError(
                 f"the segmenter's labels have the shape {segments.label_image.shape}, "

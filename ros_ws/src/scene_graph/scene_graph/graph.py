@@ -27,6 +27,7 @@ class GraphStatus(IntEnum):
     BAD_IMAGE = 5
     HIDDEN = 6
     DOUBTFUL = 7
+    NO_PLACES = 8
 
     @property
     def sees_all(self) -> bool:
