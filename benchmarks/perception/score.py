@@ -164,7 +164,9 @@ def answer_to(
         hides=hides,
         readings=len(readings) if confident or doubtful else 0,
         covered=right in readings,
-        place_errors=place_errors(truth, seen.graph) if confident and item.found is not None else (),
+        place_errors=place_errors(truth, seen.graph)
+        if confident and item.found is not None
+        else (),
     )
     return answer, seen
 

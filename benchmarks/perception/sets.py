@@ -78,7 +78,7 @@ class PictureSet:
             colour alone clusters of colours beside the network.
         told: whether one picture can tell what is wrong with it.
         note: what has to be known to read the rows.
-        found: how many places are to be found, 0: as many as there are stacks; None: they are given.
+        found: how many places are to be found, 0: as many as stacks; None: they are given.
         between: whether colours may be in doubt, and what is published of that is counted.
         poses: bounds on median and 99th percentile of the centre's error [mm], median of yaw's [°].
     """

@@ -9,13 +9,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import yaml
+from perception.found_truth import on_found_places, place_errors
 from perception.readings import reading_rows, relations_of
 from perception.scenes import CLUTTER_GAP
 from perception.score import Answer, refusals, rows_of
 from perception.sets import SETS, PictureSet, UnknownSetError, sets_named
 from perception.views import view_of
 
-from scene_graph import Relation, SceneGraph, SceneObject
+from scene_graph import Place, Relation, SceneGraph, SceneObject, up_relations
 from sim_node import SceneConfig, World, parse_scene, random_layout
 
 
@@ -155,3 +156,29 @@ def test_what_is_published_is_counted_by_how_many_graphs_it_may_be() -> None:
         "single graphs among the published": 0.5,
         "right one among the published, of sets of two or more": 0.5,
     }
+
+
+def on_places(stacks: tuple[tuple[str, ...], ...], *along: float) -> SceneGraph:
+    """Stacks at places that are so far along a row [m], the blocks right over them."""
+    places = tuple(Place(index, (0.5, y, 0.0)) for index, y in enumerate(along))
+    objects = tuple(
+        SceneObject(name, name, "box", position_world=place.position_world)
+        for stack, place in zip(stacks, places)
+        for name in stack
+    )
+    return SceneGraph(objects, up_relations(stacks), places)
+
+
+def test_of_places_that_are_found_those_with_stacks_have_to_be_right() -> None:
+    truth = on_places((("a", "b"), (), ("c",)), -0.15, 0.0, 0.15)
+    # The free one is anybody's choice.
+    for stacks, along in (
+        ((("a", "b"), (), ("c",)), (-0.152, -0.03, 0.15)),
+        ((("a", "b"), ("c",), ()), (-0.152, 0.15, 0.27)),
+    ):
+        found = on_places(stacks, *along)
+        assert on_found_places(truth, found) == found.relations
+        assert place_errors(truth, found) == pytest.approx((2.0, 0.0))
+    # A stack has a place of its own, where it stands.
+    for along in ((-0.15, 0.0), (-0.15, 0.19), (), (0.15,)):
+        assert on_found_places(truth, on_places((), *along)) is None

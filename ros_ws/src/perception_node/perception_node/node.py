@@ -204,7 +204,7 @@ class PerceptionNode(Node):
         return receive
 
     def _on_find_places(
-        self, request: Trigger.Request, response: Trigger.Response
+        self, _request: Trigger.Request, response: Trigger.Response
     ) -> Trigger.Response:
         if not self._finds:
             response.message = "the places are given by stack_positions; set places to found"

@@ -132,7 +132,9 @@ class Perception:
     def _found(self, observation: Observation) -> Points:
         """Raises PerceptionError."""
         if observation.depth is None or observation.camera is None:
-            raise BadImageError("places are found in depth only; publish it, or set places to given")
+            raise BadImageError(
+                "places are found in depth only; publish it, or set places to given"
+            )
         observation.check_values()
         volume = search_volume(self.config.search, self.config.column_height)
         observation = self._aligned(observation, volume)

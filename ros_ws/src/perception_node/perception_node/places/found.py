@@ -8,6 +8,7 @@ far it was shifted. Free places lie on the line through them, as near as the han
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import Final
 
@@ -38,8 +39,9 @@ ACROSS: Final = 0.07
 #: Nothing higher than this over the table is nearer to a free place [m] ...
 LOW: Final = 0.01
 BARE: Final = 0.07
-#: ... whose middle is seen to be table, to this [m], and that far around it is in the picture.
+#: ... whose middle is seen to be table, to this [m]; so far around it all is in the picture [m].
 SEEN: Final = 0.02
+SIDE: Final = 0.04
 #: Free places are looked for at every so many metres along the line.
 STEP: Final = 0.005
 
@@ -100,10 +102,14 @@ def _feet(surfaces: Sequence[BlockSurface]) -> Array:
 
 
 def _in_reach(feet: Array, search: PlaceSearch) -> Array:
-    """The feet without those that are the arm's own; raises PlacesError where it reaches none."""
+    """The feet without those that are far off, or the arm's own.
+
+    Raises PlacesError for one that is just out of reach.
+    """
     nearest, farthest = search.reach
     away = np.hypot(*feet.T)
-    feet, away = feet[away > nearest - BEYOND], away[away > nearest - BEYOND]
+    near = (away > nearest - BEYOND) & (away < farthest + BEYOND)
+    feet, away = feet[near], away[near]
     for foot, distance in zip(feet, away):
         if not nearest <= distance <= farthest:
             raise PlacesError(
@@ -133,7 +139,7 @@ def _from_the_left(feet: Array, camera: PinholeCamera) -> Array:
     forward = forward / np.linalg.norm(forward)
     across = away @ np.array([forward[1], -forward[0]])
     order = np.argsort(across, kind="stable")
-    for left, right in zip(order, order[1:]):
+    for left, right in itertools.pairwise(order):
         if across[right] - across[left] < ACROSS:
             raise PlacesError(
                 f"of {_spot(feet[left])} and {_spot(feet[right])} one stands before the other, "
@@ -186,7 +192,7 @@ def _are_bare(
     bare = (distance >= search.reach[0]) & (distance <= search.reach[1])
     if region is None:
         return np.zeros(len(spots), bool)
-    for shift in SEEN * np.array([[-1, -1], [-1, 1], [1, -1], [1, 1], [0, 0]]):
+    for shift in SIDE * np.array([[-1, -1], [-1, 1], [1, -1], [1, 1], [0, 0]]):
         pixels = _pixels(spots + shift, camera, search)
         with np.errstate(invalid="ignore"):
             inside = (pixels >= 0.0) & (pixels <= (camera.width - 1, camera.height - 1))
