@@ -172,13 +172,13 @@ def on_places(stacks: tuple[tuple[str, ...], ...], *along: float) -> SceneGraph:
 def test_of_places_that_are_found_those_with_stacks_have_to_be_right() -> None:
     truth = on_places((("a", "b"), (), ("c",)), -0.15, 0.0, 0.15)
     # The free one is anybody's choice.
-    for stacks, along in (
-        ((("a", "b"), (), ("c",)), (-0.152, -0.03, 0.15)),
-        ((("a", "b"), ("c",), ()), (-0.152, 0.15, 0.27)),
+    for found in (
+        on_places((("a", "b"), (), ("c",)), -0.152, -0.03, 0.15),
+        on_places((("a", "b"), ("c",), ()), -0.152, 0.15, 0.27),
     ):
-        found = on_places(stacks, *along)
         assert on_found_places(truth, found) == found.relations
         assert place_errors(truth, found) == pytest.approx((2.0, 0.0))
     # A stack has a place of its own, where it stands.
-    for along in ((-0.15, 0.0), (-0.15, 0.19), (), (0.15,)):
+    elsewhere: list[tuple[float, ...]] = [(-0.15, 0.0), (-0.15, 0.19), (), (0.15,)]
+    for along in elsewhere:
         assert on_found_places(truth, on_places((), *along)) is None
