@@ -70,7 +70,7 @@ def test_places_stay_until_they_are_asked_for_anew(
 
     perception.set_parameters([Parameter("place_count", value=0)])
     answer = find_in(frames[OTHER])
-    assert answer.success and answer.message.startswith("2 places at (0.50")
+    assert answer.success and answer.message.startswith("2 places at (0.")
     assert graph_from_message(camera.show(frames[OTHER])).stacks() == OTHER[1:]
 
 

@@ -8,7 +8,6 @@ from typing import Any
 
 import pytest
 from judge import Judge
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 from tamp_interfaces.action import AchieveGoal
 
@@ -28,7 +27,7 @@ def test_a_tower_is_built_where_stacks_were_found(ros_context: Any, tmp_path: Pa
     scene.write_text("places: [[0.46, -0.07], [0.52, 0.10]]\n")
     world = {"scene": str(scene), "layout": ["red_box,blue_box", "green_box"]}
     # There is no third place on the table: blue has to go to one that perception lays.
-    nodes: dict[type[Node], dict[str, Any]] = {
+    nodes: dict[Any, dict[str, Any]] = {
         SimNode: world,
         PerceptionNode: {"use_sim_time": True, "places": "found", "place_count": 3},
         PlannerNode: {"use_sim_time": True},

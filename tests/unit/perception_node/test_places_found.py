@@ -16,9 +16,8 @@ from hypothesis import strategies as st
 from perception_scenes import Solid, cast, looking_camera
 from seen_worlds import PERCEPTION, move_hand, observe
 
-from perception_node import Observation, PerceptionConfig
+from perception_node import Observation, PerceptionConfig, PlaceSearch
 from perception_node.blocks import BlockSurface
-from perception_node.config import PlaceSearch
 from perception_node.errors import PlacesError
 from perception_node.parameters import FOUND, PARAMETERS, config_from_parameters
 from perception_node.places import Points

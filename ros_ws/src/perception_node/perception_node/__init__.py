@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .camera import PinholeCamera
-    from .config import PerceptionConfig, StabilityLimits
+    from .config import PerceptionConfig, PlaceSearch, StabilityLimits
     from .drawing import draw_scene_graph
     from .errors import BadImageError, PerceptionError, WeightsError
     from .observation import Observation
@@ -48,6 +48,7 @@ _HOMES = {
     "PerceptionConfig": "config",
     "PerceptionError": "errors",
     "PinholeCamera": "camera",
+    "PlaceSearch": "config",
     "Places": "places",
     "RowOfPlaces": "places",
     "Segment": "segment",
@@ -76,6 +77,7 @@ __all__ = [
     "PerceptionConfig",
     "PerceptionError",
     "PinholeCamera",
+    "PlaceSearch",
     "Places",
     "RowOfPlaces",
     "Segment",

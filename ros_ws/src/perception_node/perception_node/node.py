@@ -43,7 +43,6 @@ from scene_graph import GraphStatus
 
 from .alike import Alike
 from .calibration import Calibration, LensModel
-from .config import PerceptionConfig
 from .continuity import Continuity
 from .conversions import (
     frame_pose_from_message,
@@ -57,6 +56,7 @@ from .frame_pairing import FramePairing, StampedSet
 from .observation import Observation
 from .parameters import FOUND, PARAMETERS, config_from_parameters
 from .pipeline import Perceived, Perception
+from .places_kept import PlacesKept
 from .segment import RGB, RGBD, SEGMENTATION_TOPIC
 from .segment.rgb import network
 from .training.recording import Recorder
@@ -121,7 +121,11 @@ class PerceptionNode(Node):
         torch.set_num_threads(self._values["threads"])
         weights = Path(self._values["weights"] or DEFAULT_WEIGHTS)
         module = load_weights(weights)
-        self._perception = Perception(module, config_from_parameters(self._values))
+        self._kept = PlacesKept(
+            Perception(module, config_from_parameters(self._values)),
+            self._values["places"] == FOUND,
+            self.get_logger().info,
+        )
         if self._values["mask_source"] == RGB:
             network()  # raises if its weights cannot be read: now, not at the first picture
         unused = UNUSED[self._values["mask_source"]]
@@ -132,7 +136,6 @@ class PerceptionNode(Node):
         self._calibration = Calibration(self._values["rectified"], self._values["world_frame"])
         self._continuity = Continuity()
         self._alike = Alike()
-        self._newest: Observation | None = None
         self._recorder = _recorder(self._values["record"])
         self._status: GraphStatus | None = None
         self._last_image = 0.0
@@ -140,8 +143,7 @@ class PerceptionNode(Node):
         self._create_interfaces()
         self.get_logger().info(
             f"masks from {self._values['mask_source']}, weights {weights} "
-            f"(backbone {module.backbone}), "
-            + ("places to be found" if self._finds else _told(self._perception.config))
+            f"(backbone {module.backbone}), {self._kept}"
         )
 
     def _create_interfaces(self) -> None:
@@ -178,10 +180,7 @@ class PerceptionNode(Node):
 
     def _parameters_changed(self, values: dict[str, Any]) -> None:
         self._values = {**self._values, **values}
-        config = config_from_parameters(self._values)
-        if self._finds:  # those that were found stay
-            config = replace(config, stack_positions=self._perception.config.stack_positions)
-        self._perception = self._perception.configured(config)
+        self._kept.configure(config_from_parameters(self._values))
 
     def _on_extrinsics(self, message: TransformStamped) -> None:
         self._calibration.place(frame_pose_from_message(message))
@@ -206,17 +205,10 @@ class PerceptionNode(Node):
     def _on_find_places(
         self, _request: Trigger.Request, response: Trigger.Response
     ) -> Trigger.Response:
-        if not self._finds:
-            response.message = "the places are given by stack_positions; set places to found"
-        elif self._newest is None or time.perf_counter() - self._last_image > SILENCE:
+        if self._kept.finds and time.perf_counter() - self._last_image > SILENCE:
             response.message = f"no picture came within {SILENCE:g} s; check the camera"
         else:
-            before = self._perception
-            perceived = self._find_places(self._newest)
-            response.success = self._perception is not before
-            response.message = perceived.message
-            if response.success:
-                response.message = _told(self._perception.config)
+            response.success, response.message = self._kept.find_anew()
         return response
 
     def _on_timer(self) -> None:
@@ -228,7 +220,7 @@ class PerceptionNode(Node):
         self._incomplete_since = now
         header = Header(stamp=self.get_clock().now().to_msg(), frame_id=self._frame_id())
         sentence = self._pairing.problem(self._topics)
-        self._publish(self._perception.rejected(GraphStatus.BAD_IMAGE, sentence), header, now)
+        self._publish(self._kept.perception.rejected(GraphStatus.BAD_IMAGE, sentence), header, now)
 
     def _on_goal_image(
         self, request: ImageToSceneGraph.Request, response: ImageToSceneGraph.Response
@@ -238,9 +230,9 @@ class PerceptionNode(Node):
         try:
             rgb = color_from_image(request.image)
             labels = labels_from_image(request.segmentation)
-            perceived = self._perception.perceive(self._goal_observation(rgb, labels))
+            perceived = self._kept.perception.perceive(self._goal_observation(rgb, labels))
         except (ImageError, BadImageError) as error:
-            perceived = self._perception.rejected(GraphStatus.BAD_IMAGE, str(error))
+            perceived = self._kept.perception.rejected(GraphStatus.BAD_IMAGE, str(error))
         response.scene_graph = perceived_to_message(perceived, header, time.perf_counter() - start)
         return response
 
@@ -269,10 +261,10 @@ class PerceptionNode(Node):
             rgb = observation.rgb
             perceived = self._perceive(observation, frame.stamp, unchanged)
         except (ImageError, BadImageError) as error:
-            perceived = self._perception.rejected(GraphStatus.BAD_IMAGE, str(error))
+            perceived = self._kept.perception.rejected(GraphStatus.BAD_IMAGE, str(error))
         except Exception as error:  # a defect must neither stop the node nor go unseen
             self.get_logger().error(f"interpreting a frame failed:\n{traceback.format_exc()}")
-            perceived = self._perception.rejected(
+            perceived = self._kept.perception.rejected(
                 GraphStatus.BAD_IMAGE,
                 f"internal error: {error!r}; please report the log of this node",
             )
@@ -284,15 +276,11 @@ class PerceptionNode(Node):
 
     def _perceive(self, observation: Observation, stamp: int, unchanged: float) -> Perceived:
         """Interprets an observation in the light of those before it; see :class:`Continuity`."""
-        self._newest = observation
-        if self._finds and not self._perception.places.places:
-            perceived = self._find_places(observation)
-        else:
-            perceived = self._perception.perceive(observation)
+        perceived = self._kept.perceive(observation)
         self._record(observation, perceived)
         graph = perceived.graph
         if problem := self._continuity.calibration_problem(observation, graph, stamp):
-            return self._perception.rejected(GraphStatus.BAD_IMAGE, problem)
+            return self._kept.perception.rejected(GraphStatus.BAD_IMAGE, problem)
         perceived = self._alike.named(perceived, stamp)
         if perceived.status.sees_all:
             self._continuity.understand(observation, graph, stamp)
@@ -302,18 +290,6 @@ class PerceptionNode(Node):
                 "to the last bit"
             )
             perceived = replace(perceived, message=perceived.message + hint)
-        return perceived
-
-    @property
-    def _finds(self) -> bool:
-        return bool(self._values["places"] == FOUND)
-
-    def _find_places(self, observation: Observation) -> Perceived:
-        """Interprets an observation with the places that are found in it, and keeps these."""
-        found, perceived = self._perception.find_places(observation)
-        if found is not self._perception:
-            self._perception = found
-            self.get_logger().info(f"found {_told(found.config)}")
         return perceived
 
     def _record(self, observation: Observation, perceived: Perceived) -> None:
@@ -360,12 +336,6 @@ class PerceptionNode(Node):
                 self.get_logger().warning(f"{perceived.status.name}: {perceived.message}")
         if self._markers.get_subscription_count():
             self._markers.publish(markers_from_graph(perceived.graph, header))
-
-
-def _told(config: PerceptionConfig) -> str:
-    """The places, in words."""
-    spots = [f"({x:.3f}, {y:.3f})" for x, y, _ in config.stack_positions]
-    return f"{len(spots)} places at {', '.join(spots)} m"
 
 
 def _recorder(folder: str) -> Recorder | None:
