@@ -18,7 +18,7 @@ from seen_worlds import PERCEPTION, move_hand, observe
 
 from perception_node import Observation, PerceptionConfig, PlaceSearch
 from perception_node.blocks import BlockSurface
-from perception_node.errors import PlacesError
+from perception_node.errors import HiddenPlacesError, PlacesError
 from perception_node.parameters import FOUND, PARAMETERS, config_from_parameters
 from perception_node.places import Points
 from perception_node.places.found import SLACK, find_places, search_volume
@@ -47,11 +47,12 @@ def found(
         for (x, y), height in stacks.items()
         for level in range(height)
     ]
-    depth, _ = cast([*solids, *others], CAMERA)
+    depth, labels = cast([*solids, *others], CAMERA)
+    labelled = (labels > 0) & (labels <= len(solids))
     rgb = np.full((*depth.shape, 3), 128, np.uint8)
     surfaces = [surface(*spot, level) for spot, height in stacks.items() for level in range(height)]
     volume = search_volume(search, 0.36)
-    return find_places(Observation(rgb, None, depth, CAMERA), surfaces, search, volume)
+    return find_places(Observation(rgb, None, depth, CAMERA), labelled, surfaces, search, volume)
 
 
 def spots(places: Points) -> list[Spot]:
@@ -69,7 +70,8 @@ def test_a_tower_that_leans_on_its_way_up_has_its_place_under_its_lowest_block()
     depth, _ = cast([], CAMERA)
     observation = Observation(np.full((*depth.shape, 3), 128, np.uint8), None, depth, CAMERA)
     search = PlaceSearch()
-    places = find_places(observation, bent, search, search_volume(search, 0.36))
+    nothing = np.zeros(depth.shape, bool)
+    places = find_places(observation, nothing, bent, search, search_volume(search, 0.36))
     assert spots(places) == [(0.5, 0.0)]
 
 
@@ -101,16 +103,28 @@ def test_beside_one_stack_places_are_laid_across_the_view() -> None:
     assert np.allclose([y for _, y, _ in places], [-0.12, 0.0, 0.12], atol=0.0051)
 
 
-def test_free_places_are_not_where_other_things_stand_or_hide_the_table() -> None:
+def test_free_places_are_not_where_other_things_stand() -> None:
     there, search = {(0.5, -0.06): 1, (0.5, 0.08): 1}, PlaceSearch(count=3)
-    for thing in (
-        Solid("box", (0.5, 0.2, 0.1), (0.04, 0.04, 0.1)),
-        Solid("box", (0.75, 0.16, 0.1), (0.01, 0.05, 0.1)),  # before the place
-    ):
-        places = found(there, search, (thing,))
-        assert places[0][1] == pytest.approx(-0.18, abs=0.0051)
+    places = found(there, search, (Solid("box", (0.5, 0.2, 0.1), (0.04, 0.04, 0.1)),))
+    assert places[0][1] == pytest.approx(-0.18, abs=0.0051)
     (_, _, right) = found(there, search, (Solid("box", (0.5, -0.2, 0.1), (0.04, 0.04, 0.1)),))
     assert right[1] == pytest.approx(0.2, abs=0.0051)
+
+
+def test_places_are_not_found_where_something_may_hide_a_stack_of_the_row() -> None:
+    there = {(0.5, -0.06): 1, (0.5, 0.08): 1}
+    hand = Solid("box", (0.75, 0.16, 0.1), (0.01, 0.05, 0.1))
+    with pytest.raises(
+        HiddenPlacesError, match=r"hides \(0.50, 0.2\d\) m, where a stack may stand"
+    ):
+        found(there, others=(hand,))
+    # What is too low, or over it, or the foot of the arm behind it, hides none.
+    for others in (
+        replace(hand, centre=(0.75, 0.16, 0.02), half=(0.01, 0.05, 0.02)),
+        replace(hand, centre=(0.75, 0.16, 0.4)),
+        Solid("box", (0.0, 0.0, 0.2), (0.08, 0.08, 0.2)),
+    ):
+        assert len(found(there, others=(others,))) == 2
 
 
 @pytest.mark.parametrize(

@@ -38,5 +38,9 @@ class PlacesError(PerceptionError):
     """Stacks that cannot all stand on places."""
 
 
+class HiddenPlacesError(PlacesError):
+    """Something that is no block hides where a stack may stand while places are looked for."""
+
+
 class DatasetError(PerceptionError):
     """A data set that is missing or not as :mod:`perception_node.training.dataset` describes."""

@@ -15,7 +15,7 @@ from .alignment import aligned
 from .blocks import centres, find_blocks, measure
 from .config import PerceptionConfig
 from .covered import Seen, measure_seen, poorly_seen, uncovered
-from .errors import BadImageError, PerceptionError, PlacesError
+from .errors import BadImageError, HiddenPlacesError, PerceptionError, PlacesError
 from .fallen import find_fallen, with_fallen
 from .graph import build_graph
 from .hiding import Hidden, find_hidden
@@ -120,6 +120,8 @@ class Perception:
         try:
             observation = observation.checked()
             found = self.configured(replace(self.config, stack_positions=self._found(observation)))
+        except HiddenPlacesError as error:
+            return self, self.rejected(GraphStatus.OCCLUDED, str(error))
         except PlacesError as error:
             return self, self.rejected(GraphStatus.NO_PLACES, str(error))
         except PerceptionError as error:
@@ -138,8 +140,10 @@ class Perception:
         observation.check_values()
         volume = search_volume(self.config.search, self.config.column_height)
         observation = self._aligned(observation, volume)
-        surfaces = measure(observation, self._segments(observation, volume))
-        return find_places(observation, surfaces, self.config.search, volume)
+        segments = self._segments(observation, volume)
+        surfaces = measure(observation, segments)
+        labelled = segments.label_image > 0
+        return find_places(observation, labelled, surfaces, self.config.search, volume)
 
     def rejected(self, status: GraphStatus, message: str) -> Perceived:
         """An empty graph with the reason for it."""

@@ -20,7 +20,7 @@ from scipy.spatial import KDTree
 from perception_node.blocks.measure import BlockSurface
 from perception_node.camera import PinholeCamera
 from perception_node.config import PlaceSearch
-from perception_node.errors import PlacesError
+from perception_node.errors import HiddenPlacesError, PlacesError
 from perception_node.observation import Observation
 from perception_node.segment import Volume
 from perception_node.segment.region import look_at
@@ -44,6 +44,9 @@ SEEN: Final = 0.02
 SIDE: Final = 0.04
 #: Free places are looked for at every so many metres along the line.
 STEP: Final = 0.005
+#: On so many steps of it, where they are hidden, a block of this height can stand unseen [m].
+FITS: Final = 5
+LOWEST: Final = 0.025
 
 
 def search_volume(search: PlaceSearch, height: float) -> Volume:
@@ -59,16 +62,22 @@ def search_volume(search: PlaceSearch, height: float) -> Volume:
 
 
 def find_places(
-    observation: Observation, surfaces: Sequence[BlockSurface], search: PlaceSearch, volume: Volume
+    observation: Observation,
+    labelled: NDArray[np.bool_],
+    surfaces: Sequence[BlockSurface],
+    search: PlaceSearch,
+    volume: Volume,
 ) -> Points:
     """The places, from the left of the picture [m].
 
     Args:
         observation: with depth and camera.
-        surfaces: of all blocks in the volume.
+        labelled: the pixels of all blocks in the volume, shape (height, width).
+        surfaces: of these blocks.
         volume: see :func:`search_volume`.
 
     Raises:
+        HiddenPlacesError: if something else may hide a stack beside those that are seen.
         PlacesError: if the stacks cannot stand on places of one row that the arm reaches.
 
     There are none where no stack is seen.
@@ -78,6 +87,7 @@ def find_places(
     feet = _in_reach(_feet(surfaces), search)
     if not len(feet):
         return ()
+    _check_seen(feet, observation, labelled, search)
     _check_apart(feet, search)
     if search.count and len(feet) > search.count:
         raise PlacesError(
@@ -158,12 +168,7 @@ def _free(
     """
     camera = observation.camera
     assert camera is not None
-    middle, along = feet.mean(axis=0), camera.world_from_optical[:2, 0]
-    if len(feet) > 1:
-        along = np.linalg.svd(feet - middle)[2][0]
-    along = along / np.linalg.norm(along)
-    span = np.arange(-2.0 * search.reach[1], 2.0 * search.reach[1], STEP)
-    spots = middle + span[:, None] * along
+    spots = _line(feet, camera, search)
     spots = spots[_are_bare(spots, observation, search, volume)]
     aside = np.abs(_pixels(spots, camera, search)[:, 0] - 0.5 * camera.width)
     taken = feet
@@ -182,16 +187,57 @@ def _free(
     return taken[len(feet) :]
 
 
+def _line(feet: Array, camera: PinholeCamera, search: PlaceSearch) -> Array:
+    """Spots in reach on the line through the feet, shape (n, 2) [m]."""
+    middle, along = feet.mean(axis=0), camera.world_from_optical[:2, 0]
+    if len(feet) > 1:
+        along = np.linalg.svd(feet - middle)[2][0]
+    along = along / np.linalg.norm(along)
+    span = np.arange(-2.0 * search.reach[1], 2.0 * search.reach[1], STEP)
+    spots = middle + span[:, None] * along
+    distance = np.hypot(*spots.T)
+    in_reach = (distance >= search.reach[0]) & (distance <= search.reach[1])
+    return spots[in_reach]
+
+
+def _check_seen(
+    feet: Array, observation: Observation, labelled: NDArray[np.bool_], search: PlaceSearch
+) -> None:
+    """Raises HiddenPlacesError for what is no block and may hide a stack of the row."""
+    camera, depth = observation.camera, observation.depth
+    assert camera is not None and depth is not None
+    spots = _line(feet, camera, search)
+    pixels = np.rint(_pixels(spots, camera, search, LOWEST))
+    with np.errstate(invalid="ignore"):
+        inside = ((pixels >= 0) & (pixels < (camera.width, camera.height))).all(axis=1)
+    spots, pixels = spots[inside], pixels[inside]
+    columns, rows = pixels.astype(int).T
+    seen = depth[rows, columns]
+    points = camera.position_world + seen[:, None] * camera.rays_world(pixels)
+    away = [np.hypot(*(at[:, :2] - camera.position_world[:2]).T) for at in (points, spots)]
+    with np.errstate(invalid="ignore"):
+        hides = (seen > 0.0) & ~labelled[rows, columns] & (away[0] < away[1] - BARE)
+        hides &= points[:, 2] > search.table_height + LOW
+        hides &= np.hypot(*points[:, :2].T) > search.reach[0] - BEYOND  # else the arm's own foot
+    ends = np.flatnonzero(~np.concatenate([[False], hides, [False]]))
+    longest = int(np.argmax(np.diff(ends)))
+    if np.diff(ends)[longest] > FITS:
+        spot = spots[(ends[longest] + ends[longest + 1] - 1) // 2]
+        raise HiddenPlacesError(
+            f"something that is not a block hides {_spot(spot)}, where a stack may stand; places "
+            "are found when it is gone"
+        )
+
+
 def _are_bare(
     spots: Array, observation: Observation, search: PlaceSearch, volume: Volume
 ) -> NDArray[np.bool_]:
-    """Whether at each spot in reach nothing but table is seen, shape (n, 2) [m] -> (n,)."""
+    """Whether at each spot nothing but table is seen, shape (n, 2) [m] -> (n,)."""
     camera, region = observation.camera, look_at(observation, volume)
     assert camera is not None
-    distance = np.hypot(*spots.T)
-    bare = (distance >= search.reach[0]) & (distance <= search.reach[1])
+    bare = np.full(len(spots), region is not None)
     if region is None:
-        return np.zeros(len(spots), bool)
+        return bare
     for shift in SIDE * np.array([[-1, -1], [-1, 1], [1, -1], [1, 1], [0, 0]]):
         pixels = _pixels(spots + shift, camera, search)
         with np.errstate(invalid="ignore"):
@@ -208,8 +254,11 @@ def _are_bare(
     return bare
 
 
-def _pixels(spots: Array, camera: PinholeCamera, search: PlaceSearch) -> Array:
-    return camera.project(np.column_stack([spots, np.full(len(spots), search.table_height)]))
+def _pixels(spots: Array, camera: PinholeCamera, search: PlaceSearch, height: float = 0.0) -> Array:
+    """Where spots are seen, so high over the table, (n, 2) [m] -> (n, 2) [px]."""
+    return camera.project(
+        np.column_stack([spots, np.full(len(spots), search.table_height + height)])
+    )
 
 
 def _spot(foot: Array) -> str:
