@@ -90,7 +90,7 @@ def measure(options: argparse.Namespace) -> list[Row]:
         others = right.pop("reconstruction", None)
         if others is not None:
             for setting, mine in right.items():
-                rows.append(gain_row(f"{setting}, o = {channels}", mine, others, test))
+                rows.append(gain_row(f"{setting}, o = {channels}", mine, others, test, channels))
     return rows
 
 

@@ -37,6 +37,8 @@ TABLE: Final[dict[str, tuple[float, float, str | None, str | None]]] = {
     "reconstruction": (0.676227, 0.000464, None, "<= 0.00046"),
     "both": (0.931829, 0.002303, ">= 0.955", "<= 0.0023"),
 }
+#: Size o of the codes of that table.
+TABLE_CHANNELS: Final = 64
 
 
 def train_reader(folder: Path, train: ClevrSet, config: ReaderConfig) -> ReaderTrainer:
@@ -119,7 +121,7 @@ def qa_rows(trainer: QaTrainer, test: ClevrSet) -> tuple[list[Row], NDArray[np.b
     """A line of Table 4.1, families in its note, and which questions were answered right."""
     config = trainer.config
     label = f"{config.setting}, o = {config.encoder.channels}"
-    full = config.encoder.channels == 64
+    full = config.encoder.channels == TABLE_CHANNELS
     accuracy, error, bound, error_bound = TABLE[config.setting]
     found = reconstruction_error(trainer.encoder.eval(), test.images)
     row, right = _answers_row(
@@ -141,11 +143,16 @@ def qa_rows(trainer: QaTrainer, test: ClevrSet) -> tuple[list[Row], NDArray[np.b
 
 
 def gain_row(
-    label: str, right: NDArray[np.bool_], others: NDArray[np.bool_], test: ClevrSet
+    label: str,
+    right: NDArray[np.bool_],
+    others: NDArray[np.bool_],
+    test: ClevrSet,
+    channels: int = TABLE_CHANNELS,
 ) -> Row:
     """By how much a setting answers better than reconstruction only, question by question.
 
-    Questions about one scene fail together, so the interval is that of scenes.
+    Questions about one scene fail together, so the interval is that of scenes. A bound is asked of
+    codes of Table 4.1's size only; smaller ones belong to Figure 4.9.
     """
     owners = np.repeat(np.arange(len(test.images)), [len(items) for items in test.questions])
     gain = right.astype(np.float64) - others
@@ -154,7 +161,7 @@ def gain_row(
     half = 1.96 * float(np.sqrt((of_scenes**2).sum())) / len(gain)
     return Row(
         label, "QA accuracy above reconstruction only, low end", mean - half, "", len(gain),
-        (mean - half, mean + half), required="> 0",
+        (mean - half, mean + half), required="> 0" if channels == TABLE_CHANNELS else None,
         note=f"the same questions; {mean:+.4f}, 95% interval over scenes",
     )  # fmt: skip
 

@@ -83,4 +83,5 @@ def test_questions_about_one_scene_count_as_failing_together() -> None:
     row = gain_row("kl", right, others, test)
     half = 1.96 * np.hypot(1.0, 1.0) / 4
     assert row.spread == pytest.approx((0.5 - half, 0.5 + half))
-    assert row.value == pytest.approx(0.5 - half) and not row.holds
+    assert row.value == pytest.approx(0.5 - half) and row.holds is False
+    assert gain_row("kl", right, others, test, channels=8).holds is None
