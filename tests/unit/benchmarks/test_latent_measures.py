@@ -99,10 +99,9 @@ def painted(scenes: int, seed: int) -> ClevrSet:
     things = []
     for image in images:
         number = int(rng.integers(6))
-        words = {name: known[rng.integers(len(known))] for name, known in ATTRIBUTES.items()}
-        words["color"] = ATTRIBUTES["color"][number]
+        size, shape = (str(rng.choice(ATTRIBUTES[name])) for name in ("size", "shape"))
         position = (float(rng.uniform(0.4, 0.6)), float(rng.uniform(-0.1, 0.1)), 0.03)
-        things.append((Thing(**words, position_world=position, yaw=0.0),))
+        things.append((Thing(size, ATTRIBUTES["color"][number], shape, position, 0.0),))
         column, row = 4 * places_of(things[-1])[0]
         image[row : row + 4, column : column + 4] = [values[number + 1 >> i & 1] for i in range(3)]
     return ClevrSet(images, tuple(things), ((),) * scenes)
