@@ -18,7 +18,9 @@ from latent.blocks_world import DataError
 from latent.clevr.dataset import read_clevr
 from latent.qa_training import (
     baseline_rows,
-    gain_row,
+    gain_rows,
+    linear_rows,
+    owners_of,
     qa_rows,
     reader_rows,
     train_qa,
@@ -80,17 +82,17 @@ def measure(options: argparse.Namespace) -> list[Row]:
             name = f"{setting}_{encoder.channels}_{options.answerer}_{options.seed}"
             return train_qa(options.runs / name, config, reader, start)
 
-        right = {}
+        encoders, right = {}, {}
         for setting in options.settings:
             # The reader cannot be asked of what shows nothing yet: the others go on from there.
             alone = setting == "reconstruction"
             start = None if alone else trained("reconstruction", None, encoder)
-            found, right[setting] = qa_rows(trained(setting, start, encoder), test)
+            trainer = trained(setting, start, encoder)
+            found, right[setting] = qa_rows(trainer, test)
+            encoders[setting] = trainer.encoder
             rows += found
-        others = right.pop("reconstruction", None)
-        if others is not None:
-            for setting, mine in right.items():
-                rows.append(gain_row(f"{setting}, o = {channels}", mine, others, test))
+        rows += gain_rows(right, channels, owners_of(test))
+        rows += linear_rows(encoders, channels, train, test)
     return rows
 
 

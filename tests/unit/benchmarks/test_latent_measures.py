@@ -5,17 +5,19 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from latent.clevr.dataset import ClevrSet
-from latent.clevr.programs import Step
-from latent.clevr.questions import Question
+import torch
+from latent.clevr.dataset import CAMERA, ClevrSet
+from latent.clevr.things import ATTRIBUTES, Thing
+from latent.linear_reader import places_of, words_named_right
 from latent.planning import carried_out, majority, pairs, plan_all
 from latent.prediction import CopyState, NearestTransition, accuracy
-from latent.qa_training import gain_row
+from latent.qa_training import gain_rows
 from latent.stability import noisy, uniqueness
 
+from perception_node.latent.state_encoder import EncoderConfig, StateEncoder
 from planner_node.action_models import ObservedModel
 from planner_node.search.on_models import breadth_first_on
-from scene_graph import Move, Stacks
+from scene_graph import SPHERE, Move, Stacks
 
 
 def code(*values: int) -> np.ndarray:
@@ -77,10 +79,51 @@ def test_pairs_are_of_different_states() -> None:
 
 
 def test_questions_about_one_scene_count_as_failing_together() -> None:
-    question = Question("existence", (), Step("scene"), "yes")
-    test = ClevrSet(np.zeros((2, 1, 1, 3), np.uint8), ((), ()), ((question,) * 2,) * 2)
-    right, others = np.ones(4, np.bool_), np.array([False, False, True, True])
-    row = gain_row("kl", right, others, test)
+    right = {
+        "kl": np.ones(4, np.bool_),
+        "reconstruction": np.array([False, False, True, True]),
+    }
+    owners = np.array([0, 0, 1, 1])
+    (row,) = gain_rows(right, 64, owners)
     half = 1.96 * np.hypot(1.0, 1.0) / 4
     assert row.spread == pytest.approx((0.5 - half, 0.5 + half))
-    assert row.value == pytest.approx(0.5 - half) and not row.holds
+    assert row.value == pytest.approx(0.5 - half) and row.holds is False
+    assert [row.holds for row in gain_rows(right, 8, owners)] == [None]
+    assert gain_rows({"kl": right["kl"]}, 64, owners) == []
+
+
+def painted(scenes: int, seed: int) -> ClevrSet:
+    """Grey pictures in which the place of the one thing has its colour, and nothing more of it."""
+    rng, values = np.random.default_rng(seed), (30, 220)
+    images = np.full((scenes, 128, 128, 3), 128, np.uint8)
+    things = []
+    for image in images:
+        number = int(rng.integers(6))
+        size, shape = (str(rng.choice(ATTRIBUTES[name])) for name in ("size", "shape"))
+        position = (float(rng.uniform(0.4, 0.6)), float(rng.uniform(-0.1, 0.1)), 0.03)
+        things.append((Thing(size, ATTRIBUTES["color"][number], shape, position, 0.0),))
+        column, row = 4 * places_of(things[-1])[0]
+        image[row : row + 4, column : column + 4] = [values[number + 1 >> i & 1] for i in range(3)]
+    return ClevrSet(images, tuple(things), ((),) * scenes)
+
+
+def test_a_linear_reader_names_what_codes_show_and_nothing_else() -> None:
+    torch.manual_seed(0)
+    right, scenes = words_named_right(
+        StateEncoder(EncoderConfig(channels=64, width=8)), painted(120, 0), painted(100, 1)
+    )
+    assert scenes.tolist() == list(range(100))
+    size, color, shape = right.mean(0)
+    assert color > 0.95 and size < 0.7 and shape < 0.6
+
+
+def test_things_are_read_where_the_camera_sees_them() -> None:
+    def at(*position: float) -> tuple[Thing, ...]:
+        return (Thing("small", "red", SPHERE, (position[0], position[1], position[2]), 0.0),)
+
+    (middle,) = places_of(at(*CAMERA.target_world))
+    assert set(middle) <= {15, 16}
+    # The camera looks along -x: what is farther along y is farther to the right, above is above.
+    (right,), (above,) = places_of(at(0.52, 0.1, 0.03)), places_of(at(0.52, 0.0, 0.03 + 0.1))
+    assert right[0] > middle[0] and right[1] == middle[1]
+    assert above[1] < middle[1] and above[0] == middle[0]
