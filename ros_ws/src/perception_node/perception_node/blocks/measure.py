@@ -15,9 +15,10 @@ from perception_node.errors import BadImageError, UnmeasuredError
 from perception_node.segment import Segments
 from scene_graph import BOX, CYLINDER
 
+from .descent import Prior
 from .evidence import Evidence, covering, evidence_of
-from .fit import Fit, Prior, fit
-from .models import BallModel, BoxModel, CylinderModel, Model, Seen
+from .fit import Fit, fit
+from .models import BallModel, BoxModel, CylinderModel, Model
 
 Array = NDArray[np.float64]
 
@@ -273,16 +274,12 @@ def _surface(best: Fit, evidence: Evidence) -> BlockSurface:
 
 def _tilt(best: Fit, evidence: Evidence) -> float:
     """Angle between the walls and the vertical, 0 where it is not more than noise [rad]."""
-    origin = evidence.camera.position_world
     low, high = best.parameters[5:7]
     points = evidence.points
     walls = points[:, 2] < high - 0.1 * (high - low)
     if np.count_nonzero(walls) < 8:
         return 0.0
-    seen = Seen(
-        origin, points[None, walls], evidence.rays[None, walls], evidence.noise[None, walls]
-    )
-    off = best.model.surface(best.parameters[None], seen).off[0]
+    off = best.off[walls]
     up = points[walls, 2] - points[walls, 2].mean()
     inlier = np.abs(off - np.median(off)) < 3.0 * np.median(np.abs(off - np.median(off))) + 1e-6
     off, up = off[inlier] - off[inlier].mean(), up[inlier] - up[inlier].mean()
