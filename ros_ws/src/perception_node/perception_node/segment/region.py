@@ -36,6 +36,15 @@ class Region:
     points: Array
     inside: Mask
 
+    def part(self, box: tuple[slice, slice]) -> Region:
+        """A smaller rectangle, given by its rows and columns of this one."""
+        where = tuple(
+            slice(outer.start + inner.start, outer.start + inner.stop)
+            for outer, inner in zip(self.box, box)
+        )
+        images = (self.rgb, self.depth, self.sure, self.points, self.inside)
+        return Region((where[0], where[1]), *(image[box] for image in images))
+
 
 def look_at(observation: Observation, volume: Volume) -> Region | None:
     """The part of a picture that shows a volume; None where none of it is in the picture.

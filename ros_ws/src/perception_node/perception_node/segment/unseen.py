@@ -59,12 +59,15 @@ def unseen(region: Region, look: Look, picture_area: int) -> Mask:
         picture_area: of the picture that the region is a part of [px].
     """
     everything, least = np.ones(region.depth.shape, bool), MIN_AREA * picture_area
-    if np.count_nonzero(~np.isfinite(region.depth)) <= (1.0 - MIN_DEPTH_SHARE) * least:
+    unknown, enough = ~np.isfinite(region.depth), (1.0 - MIN_DEPTH_SHARE) * least
+    if np.count_nonzero(unknown) <= enough:
         return ~everything
     facets = find_facets(everything, look, region.depth)
+    without = np.bincount(facets.ids[unknown], minlength=facets.count + 1)
+    if without.max() <= enough:
+        return ~everything
     pixels = np.bincount(facets.ids.ravel(), minlength=facets.count + 1)
-    known = np.bincount(facets.ids[np.isfinite(region.depth)], minlength=facets.count + 1)
-    bare = (pixels >= least) & (known < MIN_DEPTH_SHARE * pixels)
+    bare = (pixels >= least) & (pixels - without < MIN_DEPTH_SHARE * pixels)
     behind = bare & (pixels > MAX_PART * everything.size)
     for edge in (facets.ids[0], facets.ids[:, 0], facets.ids[:, -1]):
         behind[edge] |= bare[edge]
