@@ -26,8 +26,18 @@ typedef struct {
 } Found;
 
 typedef struct {
-    double off, doubt, slopes[MOST];
+    double off, variance; /* of a point from a face, and of that */
 } Face;
+
+/* The face that a point is of, and by which parameters it moves. */
+typedef struct {
+    double off, variance, slopes[4];
+    int count;
+    const int *by;
+} Met;
+
+static const int ALL[] = {0, 1, 2, 3, 4, 5, 6}, WALLS[2][4] = {{0, 1, 2, 3}, {0, 1, 2, 4}};
+static const int LIDS[] = {6, 4};
 
 static double larger(double one, double other) { return one > other ? one : other; }
 static double smaller(double one, double other) { return one < other ? one : other; }
@@ -118,14 +128,16 @@ static int hull_of(int count, double flat[][2], int *hull) {
     return size > 1 ? size - 1 : size;
 }
 
-static void add_residual(int count, double huber, double residual, const double *slopes,
-                         Found *found) {
-    const double size = fabs(residual), weight = smaller(1.0, huber / larger(size, 1e-12));
+/* A residual, whose slopes by some parameters, ascending, are not zero. */
+static void add_residual(double huber, double residual, int count, const int *by,
+                         const double *slopes, Found *found) {
+    const double size = fabs(residual), weight = size > huber ? huber / size : 1.0;
     found->cost += 0.5 * (weight * size * (2.0 * size - weight * size));
     for (int i = 0; i < count; ++i) {
         const double weighted = weight * slopes[i];
-        found->gradient[i] += weighted * residual;
-        for (int j = 0; j <= i; ++j) found->information[MOST * i + j] += weighted * slopes[j];
+        double *row = found->information + MOST * by[i];
+        found->gradient[by[i]] += weighted * residual;
+        for (int j = 0; j <= i; ++j) row[by[j]] += weighted * slopes[j];
     }
 }
 
@@ -134,7 +146,7 @@ static void add_residual(int count, double huber, double residual, const double 
 static void add_face(const Task *task, double noise, double off, double step, double distance,
                      int number, Face *face, int *met, double *last) {
     face->off = off;
-    face->doubt = sqrt(noise * step * noise * step + task->floor * task->floor);
+    face->variance = noise * step * noise * step + task->floor * task->floor;
     const double meets = distance / smaller(step, -1e-9);
     if (meets > *last && step < 0.0) {
         *met = number;
@@ -142,11 +154,12 @@ static void add_face(const Task *task, double noise, double off, double step, do
     }
 }
 
-/* The face that a point is of. */
+/* Signed square of how many standard deviations a point is outside of a face. */
+static double beyond(const Face *face) { return face->off * fabs(face->off) / face->variance; }
+
 static void surface(const Task *task, const double *p, double c, double s, const double *point,
-                    const double *ray, double noise, Face *out) {
+                    const double *ray, double noise, Met *out) {
     const double *origin = task->origin;
-    memset(out->slopes, 0, sizeof out->slopes);
     if (task->kind == BALL) {
         double away[3], square = 0.0, step = 0.0;
         for (int i = 0; i < 3; ++i) {
@@ -159,14 +172,18 @@ static void surface(const Task *task, const double *p, double c, double s, const
             step -= out->slopes[i] * ray[i];
         }
         out->slopes[3] = -1.0;
+        out->count = 4;
+        out->by = ALL;
         out->off = distance - p[3];
-        out->doubt = sqrt(noise * step * noise * step + task->floor * task->floor);
+        out->variance = noise * step * noise * step + task->floor * task->floor;
         return;
     }
     Face faces[FACES];
-    int met = 0, lid = task->kind == BOX ? 6 : 4, count = task->kind == BOX ? 3 : 2;
+    const int *lid = task->kind == BOX ? LIDS : LIDS + 1;
+    const int count = task->kind == BOX ? 3 : 2;
+    int met = 0;
     double last = -INFINITY, slopes[FACES][4];
-    const double dx = point[0] - p[0], dy = point[1] - p[1], high = p[lid];
+    const double dx = point[0] - p[0], dy = point[1] - p[1], high = p[*lid];
     add_face(task, noise, point[2] - high, ray[2], high - origin[2], 0, &faces[0], &met, &last);
     if (task->kind == BOX) {
         for (int index = 0; index < 2; ++index) {
@@ -178,6 +195,7 @@ static void surface(const Task *task, const double *p, double c, double s, const
             mine[0] = -side * a;
             mine[1] = -side * b;
             mine[2] = side * (a * dy - b * dx);
+            mine[3] = -0.5;
             add_face(task, noise, side * place - half, side * (a * ray[0] + b * ray[1]),
                      half - side * begin, 1 + index, &faces[1 + index], &met, &last);
         }
@@ -191,23 +209,29 @@ static void surface(const Task *task, const double *p, double c, double s, const
         const double meets = (-b - sqrt(larger(under, 0.0))) / a;
         slopes[1][0] = -dx / from_axis;
         slopes[1][1] = -dy / from_axis;
+        slopes[1][2] = -1.0;
         add_face(task, noise, from_axis - p[2], step, meets * step, 1, &faces[1], &met, &last);
     }
     int worst = 0;
-    for (int k = 1; k < count; ++k)
-        if (faces[k].off / faces[k].doubt > faces[worst].off / faces[worst].doubt) worst = k;
-    if (faces[worst].off / faces[worst].doubt > fabs(faces[met].off / faces[met].doubt)) met = worst;
+    double furthest = beyond(&faces[0]);
+    for (int k = 1; k < count; ++k) {
+        const double far = beyond(&faces[k]);
+        if (far > furthest) {
+            furthest = far;
+            worst = k;
+        }
+    }
+    if (furthest > fabs(beyond(&faces[met]))) met = worst;
     out->off = faces[met].off;
-    out->doubt = faces[met].doubt;
+    out->variance = faces[met].variance;
     if (met == 0) {
-        out->slopes[lid] = -1.0;
-    } else if (task->kind == BOX) {
-        for (int i = 0; i < 3; ++i) out->slopes[i] = slopes[met][i];
-        out->slopes[2 + met] = -0.5;
+        out->slopes[0] = -1.0;
+        out->count = 1;
+        out->by = lid;
     } else {
-        out->slopes[0] = slopes[1][0];
-        out->slopes[1] = slopes[1][1];
-        out->slopes[2] = -1.0;
+        memcpy(out->slopes, slopes[met], sizeof out->slopes);
+        out->count = task->kind == BOX ? 4 : 3;
+        out->by = task->kind == BOX ? WALLS[met - 1] : ALL;
     }
 }
 
@@ -272,16 +296,16 @@ static void add_outline(const Task *task, const Block *block, const double *p, F
         share = smaller(larger(share / larger(length[edge], 1e-9), 0.0), 1.0);
         for (int k = 0; k < count; ++k)
             slopes[k] = ((share - 1.0) * begins[edge][k] - share * ends[edge][k]) * inverse;
-        add_residual(count, task->huber, off * inverse, slopes, found);
+        add_residual(task->huber, off * inverse, count, ALL, slopes, found);
     }
 }
 
 static void distances(const Task *task, const Block *block, const double *p, double *offs) {
     const double c = cos(p[2]), s = sin(p[2]);
     for (int n = 0; n < task->points; ++n) {
-        Face face;
-        surface(task, p, c, s, block->points + 3 * n, block->rays + 3 * n, block->noise[n], &face);
-        offs[n] = face.off;
+        Met met;
+        surface(task, p, c, s, block->points + 3 * n, block->rays + 3 * n, block->noise[n], &met);
+        offs[n] = met.off;
     }
 }
 
@@ -291,10 +315,11 @@ static void look(const Task *task, const Block *block, const double *p, Found *f
     const double c = cos(p[2]), s = sin(p[2]); /* of a box */
     for (int n = 0; n < task->points; ++n) {
         if (block->used[n] == 0.0) continue;
-        Face face;
-        surface(task, p, c, s, block->points + 3 * n, block->rays + 3 * n, block->noise[n], &face);
-        for (int k = 0; k < count; ++k) face.slopes[k] /= face.doubt;
-        add_residual(count, task->huber, face.off / face.doubt, face.slopes, found);
+        Met met;
+        surface(task, p, c, s, block->points + 3 * n, block->rays + 3 * n, block->noise[n], &met);
+        const double inverse = 1.0 / sqrt(met.variance);
+        for (int k = 0; k < met.count; ++k) met.slopes[k] *= inverse;
+        add_residual(task->huber, met.off * inverse, met.count, met.by, met.slopes, found);
     }
     add_outline(task, block, p, found);
     for (int m = 0; m < task->priors; ++m) {
