@@ -114,8 +114,14 @@ def find_facets(candidates: Mask, look: Look, depth: Array) -> Facets:
         look: the picture.
         depth: NaN where it is unknown, which is no jump, shape (h, w) [m].
     """
+    ids, count = facet_ids(candidates, look, depth)
+    return Facets(ids, count, borders(count + 1, ids))
+
+
+def facet_ids(candidates: Mask, look: Look, depth: Array) -> tuple[Ids, int]:
+    """``ids`` and ``count`` of :func:`find_facets`."""
     count, ids = connected(candidates, _links(look, depth))
-    return Facets(ids, count - 1, borders(count, ids))
+    return ids, count - 1
 
 
 def without_leaks(facets: Facets, height: Array, reach: int) -> Facets:
