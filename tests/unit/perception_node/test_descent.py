@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 from perception_scenes import PLACES, Solid, cast, looking_camera
 from tamp_runtime import machine_code
 
@@ -40,12 +41,12 @@ def problem_of(solids: list[Solid], shape: str, noise: float, rng: np.random.Gen
     priors = []
     for item in evidence:
         x, y, z = item.points.mean(axis=0)
-        start = {
+        middle = {
             BOX: [x, y, 0.1, 0.04, 0.05, z - 0.02, z + 0.02],
             CYLINDER: [x, y, 0.02, z - 0.02, z + 0.02],
             SPHERE: [x, y, z, 0.02],
         }[shape]
-        start = np.array(start) + rng.normal(0.0, 0.003, len(start))
+        start = np.array(middle) + rng.normal(0.0, 0.003, len(middle))
         priors.append(Prior.about(start, np.full(len(start), 0.02)))
     return Problem.of(MODELS[shape], priors, evidence)
 
@@ -77,7 +78,9 @@ def test_c_descends_as_numpy_does(
 def test_without_a_compiler_numpy_descends(monkeypatch: pytest.MonkeyPatch, shape: str) -> None:
     solid = Solid(BOX, (*PLACES[1][:2], PLACES[1][2] + 0.02), (0.02, 0.02, 0.02), 0.3)
     problem = problem_of([solid], shape, 0.0, np.random.default_rng(3))
-    start = np.linalg.solve(problem.rows, problem.values[..., None])[..., 0]
+    start: NDArray[np.float64] = np.asarray(
+        np.linalg.solve(problem.rows, problem.values[..., None])[..., 0], np.float64
+    )
     fast = descended(problem, start, 5, 1e-4)
     monkeypatch.setattr(descent, "written", lambda _file: None)
     assert descended(problem, start, 5, 1e-4).cost == pytest.approx(fast.cost, rel=1e-6)

@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from perception_scenes import PLACES, looking_camera
 
 from perception_node import alignment
-from perception_node.segment import facets, pieces
+from perception_node.blocks import evidence
+from perception_node.blocks.quantiles import quantiles
+from perception_node.segment import Volume, facets, pieces, region
 from perception_node.segment.facets import Facets, Look
 from perception_node.segment.pieces import Heights
 
@@ -38,8 +41,8 @@ class Picture:
             self.rng.random((height - 1, width)) < 0.8,
             self.rng.random((height, width - 1)) < 0.8,
         ]
-        self.ids = self.rng.integers(0, 6, scale).repeat(4, axis=0).repeat(4, axis=1)
-        self.ids = np.ascontiguousarray(self.ids[:height, :width], np.int32)
+        ids = self.rng.integers(0, 6, scale).repeat(4, axis=0).repeat(4, axis=1)
+        self.ids = np.ascontiguousarray(ids[:height, :width]).astype(np.int32)
         self.look = Look.of(self.rgb, 1.0)
 
 
@@ -130,3 +133,30 @@ def test_edges_that_are_aligned(picture: Picture, reach: int) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(alignment, "written", lambda _file: None)
         same(fast, [call() for call in calls])
+
+
+@given(pictures)
+def test_points_of_pixels(picture: Picture) -> None:
+    height, width = picture.depth.shape
+    camera, volume = looking_camera(), Volume.over(np.array(PLACES), 0.3)
+    args = (camera, picture.depth, np.s_[40 : 40 + height, 100 : 100 + width], volume)
+    (points, inside), slow = region._points(*args), region.points_by_numpy(*args)
+    same(points, slow[0], 1e-6)
+    # Where rounding decides nothing.
+    clear = np.abs(points[..., None] - np.stack([volume.low, volume.high], -1)).min((2, 3)) > 1e-5
+    same(inside[clear], slow[1][clear])
+
+
+@given(pictures, st.floats(0.0, 0.01))
+def test_ends_of_blocks(picture: Picture, noise: float) -> None:
+    mask = np.zeros(picture.mask.shape, bool)
+    mask[1:-1, 1:-1] = picture.ids[1:-1, 1:-1] > 2
+    args = (mask, ~picture.mask, picture.depth.astype(np.float64), noise)
+    same(evidence._ends(*args), evidence.ends_by_numpy(*args))
+
+
+@given(st.integers(1, 50), st.floats(0.0, 1.0), seeds)
+def test_quantiles_are_those_of_numpy(count: int, share: float, seed: int) -> None:
+    values = np.random.default_rng(seed).normal(size=(count, 2))
+    expected = np.quantile(values, [share, 0.5], axis=0)
+    np.testing.assert_allclose(quantiles(values, share, 0.5), expected, rtol=0.0, atol=1e-12)

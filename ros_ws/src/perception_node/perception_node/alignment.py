@@ -211,7 +211,9 @@ def _resembled(
         return resembled_by_numpy(rgb, span, at, steps)
     (height, width), ways = span.shape, np.array(steps, np.intc)
     best = np.empty(len(at), np.int64)
-    own = [np.ascontiguousarray(rgb), np.ascontiguousarray(span), at.astype(np.int64)]
+    own: list[NDArray[Any]] = [
+        np.ascontiguousarray(rgb), np.ascontiguousarray(span), at.astype(np.int64),
+    ]  # fmt: skip
     library.resembled(
         height, width, _at(own[0]), _at(own[1]), len(at), _at(own[2]), len(ways), _at(ways),
         _at(best),

@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
 
-def quantiles(values: Array, *shares: float) -> list[Array]:
+def quantiles(values: Array, *shares: float) -> list[Any]:
     """Between neighbours on a straight line, as numpy's are.
 
     Args:

@@ -68,7 +68,7 @@ class Look:
             return cls(*look_by_numpy(rgb, dark))
         rgb = np.ascontiguousarray(rgb)
         chroma, light = np.empty(rgb.shape, np.float32), np.empty(rgb.shape[:2], np.float32)
-        library.look(light.size, at(rgb), ctypes.c_float(dark), at(chroma), at(light))
+        library.look(light.size, at(rgb), ctypes.c_float(float(dark)), at(chroma), at(light))
         return cls(chroma, light)
 
     def part(self, box: tuple[slice, slice]) -> Look:
@@ -256,8 +256,11 @@ def sums(facets: Facets, look: Look, points: Array, sure: Mask, few: int) -> Sum
     images = (facets.ids, sure, points, look.chroma, look.light)
     own = [np.ascontiguousarray(image) for image in images]
     found = Sums(
-        *(np.zeros(count, np.int64) for _ in range(2)),
-        *(np.zeros((count, columns)) for columns in (4, 3, 6)),
+        np.zeros(count, np.int64),
+        np.zeros(count, np.int64),
+        np.zeros((count, 4)),
+        np.zeros((count, 3)),
+        np.zeros((count, 6)),
     )
     library.sums(facets.ids.size, count, *map(at, own), few, *map(at, found))
     return found

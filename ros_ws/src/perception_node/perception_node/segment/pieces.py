@@ -137,14 +137,14 @@ def spread(
         return
     own = np.ascontiguousarray(labels, np.int32)
     own = own.copy() if own is labels else own
-    among = [np.ascontiguousarray(link) for link in links or ()]
-    bounds = [] if heights is None else [
-        np.ascontiguousarray(heights.of_pixels, np.float32), heights.low, heights.high,
-    ]  # fmt: skip
+    images = [np.ascontiguousarray(free), *(np.ascontiguousarray(link) for link in links or ())]
+    bounds: list[NDArray[Any]] = []
+    if heights is not None:
+        bounds = [np.ascontiguousarray(heights.of_pixels, np.float32), heights.low, heights.high]
+    first, *among = map(at, images)
     failed = library.spread(
-        *labels.shape, at(own), at(np.ascontiguousarray(free)), times,
-        *([at(link) for link in among] or [None] * 2),
-        *([at(bound) for bound in bounds] or [None] * 3),
+        *labels.shape, at(own), first, times, *(among or (None, None)),
+        *(map(at, bounds) if bounds else (None,) * 3),
     )  # fmt: skip
     if failed:
         raise MemoryError(_NO_MEMORY)

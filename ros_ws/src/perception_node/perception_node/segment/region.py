@@ -50,8 +50,14 @@ class Region:
             slice(outer.start + inner.start, outer.start + inner.stop)
             for outer, inner in zip(self.box, box)
         )
-        images = (self.rgb, self.depth, self.sure, self.points, self.inside)
-        return Region((where[0], where[1]), *(image[box] for image in images))
+        return Region(
+            (where[0], where[1]),
+            self.rgb[box],
+            self.depth[box],
+            self.sure[box],
+            self.points[box],
+            self.inside[box],
+        )
 
 
 def look_at(observation: Observation, volume: Volume) -> Region | None:

@@ -7,7 +7,7 @@ layer is computed where something differs from that only, which grows by its ker
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import torch
@@ -32,10 +32,11 @@ class NearContent(nn.Module):
         """``size``: side of the images whose content is looked for [px]."""
         super().__init__()
         self.regressor, self.size = regressor, size
+        self._blocks: list[Any] = list(regressor.features)
         self._empty: list[Array] = []
         image = torch.zeros(1, 3, size, size)
         with torch.inference_mode():
-            for block in regressor.features:
+            for block in self._blocks:
                 padded = functional.pad(image, (block[0].padding[0],) * 4)
                 self._empty.append(_by_pixels(padded)[0])
                 image = block(image)
@@ -50,7 +51,7 @@ class NearContent(nn.Module):
         patch = np.empty((len(found), side, side, 3), np.float32)
         for own, image, (row, column) in zip(patch, found, start):
             own[:] = image[:, row : row + side, column : column + side].transpose(1, 2, 0)
-        for block, empty in zip(self.regressor.features, self._empty):
+        for block, empty in zip(self._blocks, self._empty):
             convolution, rest = block[0], block[1:]
             stride, border = convolution.stride[0], convolution.padding[0]
             spread = convolution.dilation[0] * (convolution.kernel_size[0] - 1)
@@ -92,10 +93,10 @@ def _content(images: Array) -> tuple[NDArray[np.intp], int]:
     Returns:
         Where they begin, (row, column), shape (n, 2), and their side [px].
     """
-    used = images.any(axis=1)
+    used: Any = images.any(axis=1)
     ends = []
     for axis in (2, 1):
-        lines = used.any(axis=axis)
+        lines: Any = used.any(axis=axis)
         ends.append((lines.argmax(axis=1), lines.shape[1] - lines[:, ::-1].argmax(axis=1)))
     first, last = (np.stack(end, axis=-1) for end in zip(*ends))
     side = -(-max(int((last - first).max(initial=1)), 1) // STEP) * STEP
