@@ -3,13 +3,20 @@
 
 import numpy as np
 import pytest
+import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from perception_node.segment import Segments
-from perception_node.visual_module.coordinates import Coordinates, intersection_over_union
+from perception_node.visual_module.coordinates import (
+    Coordinates,
+    intersection_over_union,
+    translated_overlap,
+)
+from perception_node.visual_module.grid_sampler import sample
 from perception_node.visual_module.mask_centroid import MaskCentroid
+from perception_node.visual_module.near_content import NearContent
 from perception_node.visual_module.object_images import ObjectImages, object_images
 from perception_node.visual_module.weights import load_weights
 
@@ -115,3 +122,42 @@ def test_the_iou_of_masks_is_the_usual_one(seed: int) -> None:
     expected = (first & second).sum((1, 2)) / np.maximum(union, 1)
     found = intersection_over_union(first.astype(float), second.astype(float))
     assert found == pytest.approx(expected)
+
+
+contents = st.tuples(
+    st.integers(0, 120), st.integers(0, 120), st.integers(1, 60), st.integers(1, 60)
+)
+
+
+@settings(max_examples=30)
+@given(st.lists(contents, min_size=1, max_size=3), st.integers(0, 1000))
+def test_only_what_is_near_content_needs_to_be_computed(
+    boxes: list[tuple[int, int, int, int]], seed: int
+) -> None:
+    regressor = MODULE.regressor
+    assert isinstance(regressor, NearContent)
+    images = np.zeros((len(boxes), 3, 128, 128), np.float32)
+    for image, (row, column, height, width) in zip(images, boxes):
+        part = image[:, row : row + height, column : column + width]
+        part[:] = np.random.default_rng(seed).random(part.shape)
+    with torch.inference_mode():
+        near, whole = (each(torch.from_numpy(images)) for each in (regressor, regressor.regressor))
+    assert near.numpy() == pytest.approx(whole.numpy(), abs=1e-5)
+
+
+@settings(max_examples=30)
+@given(contents, st.floats(-0.2, 1.2), st.floats(-0.2, 1.2), st.integers(0, 1000))
+def test_the_overlap_with_a_moved_crop_is_that_with_what_the_sampler_makes_of_it(
+    box: tuple[int, int, int, int], right: float, up: float, seed: int
+) -> None:
+    row, column, height, width = box
+    rng = np.random.default_rng(seed)
+    coverage, default = np.zeros((2, 1, 128, 128), np.float32)
+    part = coverage[0, row : row + height, column : column + width]
+    part[:] = rng.random(part.shape)
+    default[0, 128 - height :, :width] = rng.random((height, width))
+    phi = np.array([[right, up]], np.float32)
+    moved = sample(torch.from_numpy(default[:, None]), torch.from_numpy(phi), 2.0)[:, 0].numpy()
+    sizes = np.array([[width, height]])
+    found = translated_overlap(coverage, default, sizes, 128.0 * phi.astype(np.float64))
+    assert found == pytest.approx(intersection_over_union(coverage, moved), abs=1e-4)

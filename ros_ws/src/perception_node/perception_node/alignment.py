@@ -8,13 +8,17 @@ one thing.
 
 from __future__ import annotations
 
+import ctypes
 import math
+from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from tamp_runtime.machine_code import written
 
 from .noise import color_noise, depth_noise
 from .observation import Observation
@@ -56,6 +60,8 @@ NOTHING: Final = np.float32(-1.0)
 #: deviations of the noise, is no edge [0..255].
 FLAT: Final = 14.0
 FLAT_NOISE: Final = 6.0
+
+_FILE: Final = Path(__file__).with_suffix(".c")
 
 
 def aligned(observation: Observation, box: tuple[slice, slice]) -> Observation:
@@ -178,28 +184,62 @@ def sharpened(rgb: NDArray[np.uint8], reach: int, noise: float) -> tuple[NDArray
     at = np.flatnonzero(span > max(FLAT, FLAT_NOISE * noise))
     if len(at) == 0:
         return rgb, 0.0
-    width = span.shape[1]
-    pad = ((reach, reach), (reach, reach))
-    wide = width + 2 * reach
-    at_wide = (at // width + reach) * wide + at % width + reach
-    channels = [np.pad(channel.astype(np.int16), pad, "edge").ravel() for channel in cv2.split(rgb)]
-    uneven = np.pad(span.astype(np.int16), pad, "edge").ravel()
-    own = [channel[at_wide] for channel in channels]
-    best = np.zeros(len(at), np.int32)
-    least: NDArray[Any] = np.full(len(at), 32_000, np.int16)
-    for down, right in disk(reach):
-        there = at_wide + (down * wide + right)
-        score = 2 * uneven[there]
-        for channel, mine in zip(channels, own):
-            score += np.abs(channel[there] - mine)
+    flat = rgb.reshape(-1, 3)
+    best = _resembled(rgb, span, at, disk(reach))
+    out = rgb.copy()
+    out.reshape(-1, 3)[at] = flat[best]
+    change = cv2.absdiff(flat[best], flat[at]).max(axis=1)
+    return out, float(np.mean(change / span.ravel()[at]))
+
+
+def _resembled(
+    rgb: NDArray[np.uint8],
+    span: NDArray[np.uint8],
+    at: NDArray[np.intp],
+    steps: Sequence[tuple[int, int]],
+) -> NDArray[np.intp]:
+    """Of the evenest pixels near by those that n pixels resemble, as indices, shape (n,).
+
+    Args:
+        rgb: shape (h, w, 3).
+        span: how uneven the neighbourhood of a pixel is, shape (h, w).
+        at: the pixels, as indices of the flattened picture, shape (n,).
+        steps: (down, right) to the pixels that are looked at.
+    """
+    library = written(_FILE)
+    if library is None:
+        return resembled_by_numpy(rgb, span, at, steps)
+    (height, width), ways = span.shape, np.array(steps, np.intc)
+    best = np.empty(len(at), np.int64)
+    own: list[NDArray[Any]] = [
+        np.ascontiguousarray(rgb), np.ascontiguousarray(span), at.astype(np.int64),
+    ]  # fmt: skip
+    library.resembled(
+        height, width, _at(own[0]), _at(own[1]), len(at), _at(own[2]), len(ways), _at(ways),
+        _at(best),
+    )  # fmt: skip
+    return best
+
+
+def resembled_by_numpy(
+    rgb: NDArray[np.uint8],
+    span: NDArray[np.uint8],
+    at: NDArray[np.intp],
+    steps: Sequence[tuple[int, int]],
+) -> NDArray[np.intp]:
+    """As :func:`_resembled`."""
+    height, width = span.shape
+    rows, columns = np.divmod(at, width)
+    flat = rgb.reshape(-1, 3).astype(np.int16)
+    uneven, own = span.ravel().astype(np.int16), flat[at]
+    best, least = np.zeros(len(at), np.intp), np.full(len(at), 32_000, np.int16)
+    for down, right in steps:
+        below, beside = np.clip(rows + down, 0, height - 1), np.clip(columns + right, 0, width - 1)
+        there = below * width + beside
+        score = 2 * uneven[there] + np.abs(flat[there] - own).sum(axis=1, dtype=np.int16)
         better = score < least
         best[better], least[better] = there[better], score[better]
-    out = rgb.copy().reshape(-1, 3)
-    change = np.zeros(len(at), np.int16)
-    for index, (channel, mine) in enumerate(zip(channels, own)):
-        out[at, index] = channel[best]
-        np.maximum(change, np.abs(channel[best] - mine), out=change)
-    return out.reshape(rgb.shape), float(np.mean(change / span.ravel()[at]))
+    return best
 
 
 def without_edges(depth: Array, band: int) -> Array:
@@ -209,19 +249,37 @@ def without_edges(depth: Array, band: int) -> Array:
         depth: NaN where it is unknown, shape (h, w) [m].
         band: how far depth and colour can be displaced against one another [px].
     """
-    # On a plane the inverse of depth is linear in the picture.
+    edge = _bends(depth, max(EDGE, EDGE_NOISE * depth_noise(depth)))
+    if band > 1:
+        around = np.ones((2 * band - 1, 2 * band - 1), np.uint8)
+        edge = np.asarray(cv2.dilate(edge, around), np.uint8)
+    return np.where(edge > 0, np.float32(np.nan), depth)
+
+
+def _bends(depth: Array, limit: float) -> NDArray[np.uint8]:
+    """Where the inverse of depth bends by more than this share of it, shape (h, w).
+
+    On a plane it is linear in the picture.
+    """
+    library = written(_FILE)
+    if library is None:
+        return bends_by_numpy(depth, limit)
+    depth = np.ascontiguousarray(depth)
+    edge = np.empty(depth.shape, np.uint8)
+    if library.bends(*depth.shape, _at(depth), ctypes.c_float(limit), _at(edge)):
+        raise MemoryError("no memory to find edges of depth")
+    return edge
+
+
+def bends_by_numpy(depth: Array, limit: float) -> NDArray[np.uint8]:
+    """As :func:`_bends`."""
     inverse = np.nan_to_num(1.0 / depth)
     bend = np.zeros(depth.shape, np.float32)
     for part in (np.s_[:, :-2], np.s_[:, 1:-1], np.s_[:, 2:]), (np.s_[:-2], np.s_[1:-1], np.s_[2:]):
         before, at, after = part
         np.fmax(bend[at], np.abs(inverse[before] - 2.0 * inverse[at] + inverse[after]), bend[at])
-    limit = max(EDGE, EDGE_NOISE * depth_noise(depth))
     with np.errstate(invalid="ignore"):
-        edge = (bend * depth > limit).view(np.uint8)
-    if band > 1:
-        around = np.ones((2 * band - 1, 2 * band - 1), np.uint8)
-        edge = np.asarray(cv2.dilate(edge, around), np.uint8)
-    return np.where(edge > 0, np.float32(np.nan), depth)
+        return (bend * depth > limit).view(np.uint8)
 
 
 def fill(depth: Array, rgb: NDArray[np.uint8], reach: int) -> Array:
@@ -232,6 +290,24 @@ def fill(depth: Array, rgb: NDArray[np.uint8], reach: int) -> Array:
         rgb: shape (h, w, 3).
         reach: how far away the neighbour can be [px].
     """
+    library = written(_FILE)
+    if library is None:
+        return fill_by_numpy(depth, rgb, reach)
+    steps = np.array(disk(reach)[1:], np.intc)
+    # Of two that look alike the nearer one.
+    costs = (2.0 * np.hypot(steps[:, 0], steps[:, 1])).astype(np.float32)
+    depth, rgb = np.ascontiguousarray(depth, np.float32), np.ascontiguousarray(rgb)
+    known, around = ~np.isnan(depth), np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
+    near, filled = cv2.dilate(known.view(np.uint8), around), np.empty_like(depth)
+    library.fill(
+        *depth.shape, _at(depth), _at(near), _at(rgb), len(steps), _at(steps), _at(costs),
+        ctypes.c_float(FILL_LIKENESS), _at(filled),
+    )  # fmt: skip
+    return filled
+
+
+def fill_by_numpy(depth: Array, rgb: NDArray[np.uint8], reach: int) -> Array:
+    """As :func:`fill`."""
     unknown = np.isnan(depth)
     near = cv2.dilate((~unknown).view(np.uint8), np.ones((2 * reach + 1, 2 * reach + 1), np.uint8))
     at = np.flatnonzero(unknown & (near > 0))
@@ -257,3 +333,7 @@ def fill(depth: Array, rgb: NDArray[np.uint8], reach: int) -> Array:
     filled = depth.copy()
     filled.reshape(-1)[at] = best
     return filled
+
+
+def _at(array: NDArray[Any]) -> ctypes.c_void_p:
+    return ctypes.c_void_p(array.ctypes.data)

@@ -70,11 +70,11 @@ class PinholeCamera:
         """Pixels (u, v) of points, shape (..., 3) [m] -> (..., 2) [px]; NaN behind the camera."""
         points = np.asarray(points_world, dtype=np.float64) - self.position_world
         optical = points @ self.world_from_optical[:3, :3]
-        depth = np.where(optical[..., 2:] > 1e-6, optical[..., 2:], np.nan)
-        k = self.intrinsics
-        u = k[0, 0] * optical[..., 0] / depth[..., 0] + k[0, 2]
-        v = k[1, 1] * optical[..., 1] / depth[..., 0] + k[1, 2]
-        return np.stack([u, v], axis=-1)
+        depth = np.where(optical[..., 2] > 1e-6, optical[..., 2], np.nan)
+        k, pixels = self.intrinsics, np.empty((*depth.shape, 2))
+        for axis in (0, 1):
+            pixels[..., axis] = k[axis, axis] * optical[..., axis] / depth + k[axis, 2]
+        return pixels
 
     def rays_world(self, pixels: ArrayLike) -> Array:
         """Directions through pixels, (..., 2) [px] -> (..., 3), of length 1 along the optical axis.
@@ -82,10 +82,9 @@ class PinholeCamera:
         A point of depth d on the ray of a pixel is ``position_world + d * ray``.
         """
         pixels = np.asarray(pixels, dtype=np.float64)
-        k = self.intrinsics
-        x = (pixels[..., 0] - k[0, 2]) / k[0, 0]
-        y = (pixels[..., 1] - k[1, 2]) / k[1, 1]
-        optical = np.stack([x, y, np.ones_like(x)], axis=-1)
+        k, optical = self.intrinsics, np.ones((*pixels.shape[:-1], 3))
+        for axis in (0, 1):
+            optical[..., axis] = (pixels[..., axis] - k[axis, 2]) / k[axis, axis]
         return optical @ self.world_from_optical[:3, :3].T
 
     def points_world(
@@ -97,13 +96,26 @@ class PinholeCamera:
             depth: along the optical axis, shape (h, w) [m].
             box: the rows and columns of the picture that the part has.
         """
-        # Rays are sums of what the column and what the row adds.
+        across, down = self.rays_apart(box)
+        points = np.empty((*depth.shape, 3), np.float32)
+        for axis, origin in enumerate(self.position_world):
+            rays = down[:, None, axis] + across[:, axis]
+            np.add(rays * depth, np.float32(origin), out=points[..., axis])
+        return points
+
+    def rays_apart(
+        self, box: tuple[slice, slice]
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """What the columns of a part of a picture add to the rays of its pixels, and its rows.
+
+        Args:
+            box: the rows and columns of the picture that the part has.
+
+        Returns:
+            Shapes (w, 3) and (h, 3), see :meth:`rays_world`.
+        """
         rows, columns = (np.arange(side.start, side.stop) for side in box)
         across = self.rays_world(np.stack([columns, np.zeros_like(columns)], axis=-1))
         down = self.rays_world(np.stack([np.zeros_like(rows), rows], axis=-1))
         down -= self.rays_world((0.0, 0.0))
-        points = np.empty((*depth.shape, 3), np.float32)
-        for axis, origin in enumerate(self.position_world):
-            rays = down[:, None, axis].astype(np.float32) + across[:, axis].astype(np.float32)
-            np.add(rays * depth, np.float32(origin), out=points[..., axis])
-        return points
+        return across.astype(np.float32), down.astype(np.float32)

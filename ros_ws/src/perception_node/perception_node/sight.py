@@ -45,32 +45,28 @@ def sight_problem(
     depth, camera = observation.depth, observation.camera
     if camera is None or not places.places or (depth is None and segments.hides is None):
         return ""
-    known = np.zeros(segments.label_image.shape, bool)
-    if depth is not None:
-        with np.errstate(invalid="ignore"):
-            known = (depth > 0.0) & np.isfinite(depth)
-    shown = known | (segments.label_image > 0)
-    black = ~shown
-    black[black] = observation.rgb[black].max(axis=1, initial=0) <= BLACK
     for place in places.places:
         name = base_name(place.index)
         if not _inside(camera, _box(place, 0.0, FOOT)):
             return f"{name} is not in the picture; turn the camera, or correct its calibration"
-        if depth is not None and _share(~shown, camera, _box(place, 0.0, FOOT)) > MAX_UNKNOWN:
+        part, region = box_part(camera, _box(place, 0.0, FOOT))
+        bare = _bare(observation, segments, part) & region
+        if depth is not None and _share(bare, region) > MAX_UNKNOWN:
             return (
                 f"whether anything stands on {name} is not known, as there is no depth; check the "
                 "depth camera, and that nothing is before it"
             )
         width = 2.0 * config.column_half_width
-        column = _box(place, 0.0, (width, width, config.column_height))
-        if _share(black, camera, column) > MAX_BLACK:
-            bare = "" if depth is None else " and has no depth"
+        part, region = box_part(camera, _box(place, 0.0, (width, width, config.column_height)))
+        black = _bare(observation, segments, part) & region
+        black[black] = observation.rgb[part][black].max(axis=1, initial=0) <= BLACK
+        if _share(black, region) > MAX_BLACK:
+            bare_too = "" if depth is None else " and has no depth"
             return (
-                f"part of what is over {name} is black{bare}; is the lens partly covered, or part "
-                "of the picture lost?"
+                f"part of what is over {name} is black{bare_too}; is the lens partly covered, or "
+                "part of the picture lost?"
             )
-        labelled = segments.label_image > 0
-        if depth is not None and _is_higher(place, known, labelled, observation, camera, config):
+        if depth is not None and _is_higher(place, segments, observation, camera, config):
             return (
                 f"what stands on {name} is higher than {config.column_height:g} m; set "
                 "column_height to the height of the highest tower"
@@ -94,8 +90,7 @@ def _inside(camera: PinholeCamera, box: BlockPose) -> bool:
 
 def _is_higher(
     place: Place,
-    known: Mask,
-    labelled: Mask,
+    segments: Segments,
     observation: Observation,
     camera: PinholeCamera,
     config: PerceptionConfig,
@@ -105,7 +100,7 @@ def _is_higher(
     width = 2.0 * config.column_half_width
     ends = _box(place, config.column_height - ABOVE, (width, width, 2.0 * ABOVE))
     part, region = box_part(camera, ends)
-    rows, columns = pixels_of(region & known[part])
+    rows, columns = pixels_of(region & _known(observation.depth[part]))
     rows, columns = rows + part[0].start, columns + part[1].start
     rays = camera.rays_world(np.stack([columns, rows], axis=-1))
     points = camera.position_world + rays * observation.depth[rows, columns, None]
@@ -113,7 +108,9 @@ def _is_higher(
     inside = np.abs(off[:, :2]).max(axis=1, initial=0.0) < config.column_half_width
     higher = off[:, 2] - config.column_height
     beyond = inside & (higher > EXACT) & (higher < ABOVE)
-    below = inside & (higher > -EXACT) & (higher <= EXACT) & labelled[rows, columns]
+    below = (
+        inside & (higher > -EXACT) & (higher <= EXACT) & (segments.label_image[rows, columns] > 0)
+    )
     return min(int(np.count_nonzero(beyond)), int(np.count_nonzero(below))) > STRAY
 
 
@@ -135,7 +132,16 @@ def _cut_off(segments: Segments) -> str:
     return ""
 
 
-def _share(mask: Mask, camera: PinholeCamera, box: BlockPose) -> float:
-    """Of the pixels behind which a box may be the share that is in a mask."""
-    part, region = box_part(camera, box)
-    return int(np.count_nonzero(mask[part] & region)) / max(1, int(np.count_nonzero(region)))
+def _known(depth: NDArray[np.floating]) -> Mask:
+    with np.errstate(invalid="ignore"):
+        return np.asarray((depth > 0.0) & np.isfinite(depth))
+
+
+def _bare(observation: Observation, segments: Segments, part: tuple[slice, slice]) -> Mask:
+    """Which pixels of a part of the picture have neither depth nor a label."""
+    bare = segments.label_image[part] == 0
+    return bare if observation.depth is None else bare & ~_known(observation.depth[part])
+
+
+def _share(some: Mask, region: Mask) -> float:
+    return int(np.count_nonzero(some)) / max(1, int(np.count_nonzero(region)))

@@ -3,17 +3,22 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Collection
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
+from tamp_runtime.machine_code import written
 
 from perception_node.camera import PinholeCamera
 from perception_node.errors import BadImageError
 from perception_node.masks import pixels_of
 from perception_node.segment import Segment, Segments
+
+from .quantiles import quantiles
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -35,6 +40,8 @@ IN_FRONT: Final = 0.004
 #: it: between the medians of what is seen of both [m].
 HIGHER: Final = 0.008
 BESIDE: Final = 0.06
+
+_FILE: Final = Path(__file__).with_suffix(".c")
 
 
 @dataclass(frozen=True)
@@ -105,14 +112,16 @@ def evidence_of(
     at = at[:: -(-len(at) // MAX_DEPTHS)]
     inner = np.stack([at % wide.shape[1] + left - 1, at // wide.shape[1] + top - 1], axis=-1)
     depths = near.ravel()[at]
-    ends = _ends(wide, np.isin(labels, [-1, *covers]), near, noise)
+    goes_on = labels == -1
+    for label in covers:
+        goes_on |= labels == label
+    outline, shared = _ends(wide, goes_on, near, noise)
     rays = camera.rays_world(inner)
-    shared = np.concatenate([shared for _, shared in ends])
     return Evidence(
         points=camera.position_world + rays * depths[:, None],
         rays=rays,
         noise=np.maximum(noise * depths**2, 2e-4),
-        outline=np.concatenate([points for points, _ in ends]) + (left - 1, top - 1),
+        outline=outline + (left - 1, top - 1),
         camera=camera,
         edge_noise=_edge_noise(shared, edge_doubt),
     )
@@ -156,7 +165,7 @@ def covering(
         if known.any():
             rays = camera.rays_world(np.stack([columns[known], rows[known]], axis=-1))
             points = camera.position_world + rays * found[known, None]
-            middles[index] = np.median(points, axis=0)
+            middles[index] = quantiles(points, 0.5)[0]
     apart = middles[None] - middles[:, None]
     with np.errstate(invalid="ignore"):
         on = (apart[..., 2] > HIGHER) & (np.hypot(apart[..., 0], apart[..., 1]) < BESIDE)
@@ -164,15 +173,33 @@ def covering(
     return [frozenset(label for label, above in zip(labels, row) if above) for row in on]
 
 
-def _ends(mask: Mask, goes_on: Mask, depth: Array, noise: float) -> list[tuple[Array, Array]]:
+def _ends(mask: Mask, goes_on: Mask, depth: Array, noise: float) -> tuple[Array, Array]:
     """Points between a pixel of the block and one that is not, where the block is what ends.
 
     Args:
         goes_on: pixels behind which it may go on.
 
     Returns:
-        For each direction (column, row) in the padded part [px], and how many share a line.
+        Of all directions (column, row) in the padded part, shape (o, 2) [px], and how many share a
+        line, shape (o,).
     """
+    library = written(_FILE)
+    if library is None:
+        return ends_by_numpy(mask, goes_on, depth, noise)
+    images = [np.ascontiguousarray(image) for image in (mask, goes_on, depth)]
+    points, shared = np.empty((4 * mask.size, 2)), np.empty(4 * mask.size)
+    pointers = (ctypes.c_void_p(image.ctypes.data) for image in (*images, points, shared))
+    count = library.ends(
+        *mask.shape, next(pointers), next(pointers), next(pointers),
+        ctypes.c_double(IN_FRONT), ctypes.c_double(noise), next(pointers), next(pointers),
+    )  # fmt: skip
+    if count < 0:
+        raise MemoryError("no memory to find where a block ends")
+    return points[:count], shared[:count]
+
+
+def ends_by_numpy(mask: Mask, goes_on: Mask, depth: Array, noise: float) -> tuple[Array, Array]:
+    """As :func:`_ends`."""
     found = []
     for axis, step in ((0, -1), (0, 1), (1, -1), (1, 1)):
         mine = (slice(None),) * axis + (slice(1, None) if step < 0 else slice(None, -1),)
@@ -187,4 +214,5 @@ def _ends(mask: Mask, goes_on: Mask, depth: Array, noise: float) -> list[tuple[A
         point[:, 1 - axis] += (1.0 if step < 0 else 0.0) + 0.5 * step
         _, line, count = np.unique(point[:, 1 - axis], return_inverse=True, return_counts=True)
         found.append((point, count[line].astype(np.float64)))
-    return found
+    points, shared = zip(*found)
+    return np.concatenate(points), np.concatenate(shared)

@@ -15,9 +15,11 @@ from perception_node.errors import BadImageError, UnmeasuredError
 from perception_node.segment import Segments
 from scene_graph import BOX, CYLINDER
 
+from .descent import Prior
 from .evidence import Evidence, covering, evidence_of
-from .fit import Fit, Prior, fit
-from .models import BallModel, BoxModel, CylinderModel, Model, Seen
+from .fit import Fit, fit
+from .models import BallModel, BoxModel, CylinderModel, Model
+from .quantiles import quantiles
 
 Array = NDArray[np.float64]
 
@@ -118,7 +120,7 @@ def measure_blocks(
     surfaces = []
     fits, rivals = _best(evidence, noise)
     for best, item, rival in zip(fits, evidence, rivals):
-        far = FLAT + FLAT_NOISE * float(np.median(item.noise))
+        far = FLAT + FLAT_NOISE * float(quantiles(item.noise, 0.5)[0])
         upright = best.distance <= far and best.cost <= BAD
         surfaces.append(replace(_surface(best, item), rival=rival, upright=upright))
     return tuple(surfaces)
@@ -181,7 +183,7 @@ def _fit(
 def _box(evidence: Evidence) -> tuple[Array, Prior]:
     """Where the fit of a box begins, and what is known of it beforehand."""
     points = evidence.points
-    low, high = np.quantile(points[:, 2], [0.02, 0.98])
+    low, high = quantiles(points[:, 2], 0.02, 0.98)
     walls = points[points[:, 2] < high - min(0.003, 0.3 * (high - low))]
     if len(walls) < 8:
         walls = points
@@ -189,7 +191,7 @@ def _box(evidence: Evidence) -> tuple[Array, Prior]:
     yaw, front = _faces(walls[:, :2], toward)
     axes = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
     sign = np.where(axes @ toward < 0.0, -1.0, 1.0)
-    ends = np.quantile(points[:, :2] @ axes.T, [0.01, 0.99], axis=0)
+    ends = quantiles(points[:, :2] @ axes.T, 0.01, 0.99)
     back = np.where(sign > 0, ends[0], ends[1])
     widths = np.maximum(sign * (front - back), 0.012)
     # What is hardly seen of a face says nothing of how far it goes.
@@ -210,22 +212,23 @@ def _faces(walls: Array, toward: Array) -> tuple[float, Array]:
     c, s = np.cos(YAWS), np.sin(YAWS)
     axes = np.stack([np.stack([c, s], -1), np.stack([-s, c], -1)], axis=1)
     sign = np.where(axes @ toward < 0.0, -1.0, 1.0)
-    along = np.einsum("yij,nj->yin", axes, walls) * sign[..., None]
-    front = np.quantile(along, 0.9, axis=2)
-    off = np.minimum(np.abs(along - front[..., None]).min(axis=1), 0.006)
-    best = int(off.mean(axis=1).argmin())
+    along = walls @ axes.reshape(-1, 2).T * sign.ravel()
+    front = quantiles(along, 0.9)[0]
+    off = np.abs(along - front).reshape(len(walls), len(YAWS), 2)
+    off = np.minimum(np.minimum(off[..., 0], off[..., 1]), 0.006)
+    best, front = int(off.mean(axis=0).argmin()), front.reshape(-1, 2)
     return float(YAWS[best]), front[best] * sign[best]
 
 
 def _cylinder(evidence: Evidence) -> tuple[Array, Prior]:
     points = evidence.points
-    low, high = np.quantile(points[:, 2], [0.02, 0.98])
+    low, high = quantiles(points[:, 2], 0.02, 0.98)
     toward = evidence.camera.position_world[:2] - points[:, :2].mean(axis=0)
     toward = toward / np.linalg.norm(toward)
     side = np.array([-toward[1], toward[0]])
-    left, right = np.quantile(points[:, :2] @ side, [0.01, 0.99])
+    left, right = quantiles(points[:, :2] @ side, 0.01, 0.99)
     radius = max(0.5 * (right - left), 0.006)
-    near = np.quantile(points[:, :2] @ toward, 0.95)
+    (near,) = quantiles(points[:, :2] @ toward, 0.95)
     centre = toward * (near - radius) + side * 0.5 * (left + right)
     start = np.array([*centre, radius, low, high])
     return start, Prior.about(start, np.array([DOUBT, DOUBT, 0.5 * DOUBT, DOUBT, DOUBT]))
@@ -267,24 +270,21 @@ def _surface(best: Fit, evidence: Evidence) -> BlockSurface:
     return BlockSurface(
         best.model.shape, (x, y), yaw, (along, across), low, high, covariance,
         _tilt(best, evidence) if best.model.shape == BOX else 0.0,
-        seen_low=float(np.quantile(evidence.points[:, 2], 0.02)),
+        seen_low=float(quantiles(evidence.points[:, 2], 0.02)[0]),
     )  # fmt: skip
 
 
 def _tilt(best: Fit, evidence: Evidence) -> float:
     """Angle between the walls and the vertical, 0 where it is not more than noise [rad]."""
-    origin = evidence.camera.position_world
     low, high = best.parameters[5:7]
     points = evidence.points
     walls = points[:, 2] < high - 0.1 * (high - low)
     if np.count_nonzero(walls) < 8:
         return 0.0
-    seen = Seen(
-        origin, points[None, walls], evidence.rays[None, walls], evidence.noise[None, walls]
-    )
-    off = best.model.surface(best.parameters[None], seen).off[0]
+    off = best.off[walls]
     up = points[walls, 2] - points[walls, 2].mean()
-    inlier = np.abs(off - np.median(off)) < 3.0 * np.median(np.abs(off - np.median(off))) + 1e-6
+    away = np.abs(off - quantiles(off, 0.5)[0])
+    inlier = away < 3.0 * quantiles(away, 0.5)[0] + 1e-6
     off, up = off[inlier] - off[inlier].mean(), up[inlier] - up[inlier].mean()
     spread = float(up @ up)
     if spread < 1e-9:

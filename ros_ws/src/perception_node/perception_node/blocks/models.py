@@ -24,7 +24,7 @@ MODEL_NOISE: Final = 3e-4
 _UNIT: Final = np.array([[i, j, k] for i in (-0.5, 0.5) for j in (-0.5, 0.5) for k in (0.0, 1.0)])
 _TURNS: Final = np.arange(CORNERS) * (2.0 * np.pi / CORNERS)
 #: Half way between an inscribed and a circumscribed polygon.
-_CIRCLE: Final = np.stack([np.cos(_TURNS), np.sin(_TURNS)], axis=-1) * (
+CIRCLE: Final = np.stack([np.cos(_TURNS), np.sin(_TURNS)], axis=-1) * (
     0.5 + 0.5 / np.cos(np.pi / CORNERS)
 )
 
@@ -151,7 +151,7 @@ class CylinderModel:
     def outline(self, parameters: Array, origin: Array) -> Array:  # noqa: ARG002
         """See :class:`Model`."""
         x, y, radius, low, high = np.moveaxis(parameters, -1, 0)[..., None]
-        a, b = x + radius * _CIRCLE[:, 0], y + radius * _CIRCLE[:, 1]
+        a, b = x + radius * CIRCLE[:, 0], y + radius * CIRCLE[:, 1]
         ends = [np.stack([a, b, np.broadcast_to(z, a.shape)], axis=-1) for z in (low, high)]
         return np.concatenate(ends, axis=-2)
 
@@ -198,7 +198,7 @@ class BallModel:
         side = np.cross(toward, [0.0, 0.0, 1.0])
         side /= np.linalg.norm(side, axis=-1, keepdims=True)
         up = np.cross(side, toward)
-        circle = _CIRCLE[:, 0, None] * side[..., None, :] + _CIRCLE[:, 1, None] * up[..., None, :]
+        circle = CIRCLE[:, 0, None] * side[..., None, :] + CIRCLE[:, 1, None] * up[..., None, :]
         return (centre + shift * toward)[..., None, :] + rim[..., None, :] * circle
 
     def surface(self, parameters: Array, seen: Seen) -> Surface:

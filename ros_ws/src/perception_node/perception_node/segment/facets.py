@@ -1,19 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Facets: connected pixels of one colour on one surface, pieces that blocks are put together of."""
+"""Facets: connected pixels of one colour on one surface, pieces that blocks are put together of.
+
+What is done pixel by pixel is in C (``facets.c``) where that can be compiled, and else in numpy.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+import ctypes
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from pathlib import Path
+from typing import Any, Final, NamedTuple
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from tamp_runtime.machine_code import written
 
-Array = NDArray[np.float32]
-Mask = NDArray[np.bool_]
-Ids = NDArray[np.int32]
+from .pieces import Array, Ids, Mask, at, borders, connected, ends_by_number, sides, spread
 
 #: Neighbours whose hue and saturation differ by more than this are of two facets: the distance of
 #: their shares of red, green and blue in the sum of the three.
@@ -28,12 +32,12 @@ LID_DEPTH: Final = 0.1
 #: A facet leaks of which so many pixels are higher or lower than the face by more than this [m].
 LEAK: Final = 0.01
 LEAK_PIXELS: Final = 10
-#: Ends of a group of pixels, so that a few stray ones count for nothing [%].
-STRAY: Final = (1.0, 99.0)
 #: Brightness below which a colour has no hue that can be told: as part of that of the picture's
 #: brightest parts, and in standard deviations of the picture's noise.
 DARK: Final = 0.05
 DARK_NOISE: Final = 2.0
+
+_FILE: Final = Path(__file__).with_suffix(".c")
 
 
 @dataclass(frozen=True)
@@ -56,14 +60,29 @@ class Look:
             rgb: shape (h, w, 3).
             noise: that its channels had, before it was smoothed [0..255].
         """
-        # numpy is slow along an axis of three.
         brightness = np.maximum.reduce(cv2.split(rgb[::2, ::2]))
         brightest = float(np.percentile(brightness, 95))
         dark = np.float32(max(DARK * brightest, DARK_NOISE * noise, 1.0))
-        channels = [channel + dark for channel in cv2.split(rgb)]
-        total: Array = np.add(channels[0], channels[1]) + channels[2]
-        chroma = np.asarray(cv2.merge([channel / total for channel in channels]), np.float32)
-        return cls(chroma, np.log(total))
+        library = written(_FILE)
+        if library is None:
+            return cls(*look_by_numpy(rgb, dark))
+        rgb = np.ascontiguousarray(rgb)
+        chroma, light = np.empty(rgb.shape, np.float32), np.empty(rgb.shape[:2], np.float32)
+        library.look(light.size, at(rgb), ctypes.c_float(float(dark)), at(chroma), at(light))
+        return cls(chroma, light)
+
+    def part(self, box: tuple[slice, slice]) -> Look:
+        """That of some rows and columns."""
+        return Look(self.chroma[box], self.light[box])
+
+
+def look_by_numpy(rgb: NDArray[np.uint8], dark: np.float32) -> tuple[Array, Array]:
+    """Chroma and light, see :class:`Look`, of which each channel is brighter by ``dark``."""
+    # numpy is slow along an axis of three.
+    channels = [channel + dark for channel in cv2.split(rgb)]
+    total: Array = np.add(channels[0], channels[1]) + channels[2]
+    chroma = np.asarray(cv2.merge([channel / total for channel in channels]), np.float32)
+    return chroma, np.log(total)
 
 
 @dataclass(frozen=True)
@@ -83,7 +102,7 @@ class Facets:
 
     def links(self) -> list[Mask]:
         """Which neighbours are of one facet, by axis: (h - 1, w), (h, w - 1)."""
-        pairs = [(self.ids[low], self.ids[high]) for low, high in map(_sides, (0, 1))]
+        pairs = [(self.ids[low], self.ids[high]) for low, high in map(sides, (0, 1))]
         return [(first == second) & (first > 0) for first, second in pairs]
 
 
@@ -95,9 +114,14 @@ def find_facets(candidates: Mask, look: Look, depth: Array) -> Facets:
         look: the picture.
         depth: NaN where it is unknown, which is no jump, shape (h, w) [m].
     """
-    linked = [_linked(look, depth, low, high) for low, high in map(_sides, (0, 1))]
-    count, ids = _connected(candidates, linked)
-    return Facets(ids, count - 1, _borders(count, ids))
+    ids, count = facet_ids(candidates, look, depth)
+    return Facets(ids, count, borders(count + 1, ids))
+
+
+def facet_ids(candidates: Mask, look: Look, depth: Array) -> tuple[Ids, int]:
+    """``ids`` and ``count`` of :func:`find_facets`."""
+    count, ids = connected(candidates, _links(look, depth))
+    return ids, count - 1
 
 
 def without_leaks(facets: Facets, height: Array, reach: int) -> Facets:
@@ -120,7 +144,7 @@ def without_leaks(facets: Facets, height: Array, reach: int) -> Facets:
     least = cv2.erode(np.where(inner, ids, none).astype(np.float32), around)
     wide = (facets.ids > 0) & ((grown == ids) | (least == ids))
     same = facets.links()
-    count, pieces = _connected(wide, same)
+    count, pieces = connected(wide, same)
     # The largest piece of each facet, and how many pixels are higher or lower than it.
     pixels = np.bincount(pieces.ravel(), minlength=count)
     largest = np.zeros(facets.count + 1, np.intp)
@@ -128,97 +152,18 @@ def without_leaks(facets: Facets, height: Array, reach: int) -> Facets:
     owner = np.zeros(count, np.intp)
     owner[pieces[wide]] = facets.ids[wide]
     largest[owner[order]] = order
-    low, high = np.full(facets.count + 1, -np.inf), np.full(facets.count + 1, np.inf)
-    of_largest = wide & (largest[facets.ids] == pieces) & np.isfinite(height)
-    for facet, known in by_number(facets.ids[of_largest], height[of_largest]):
-        low[facet], high[facet] = np.percentile(known, STRAY)
+    of_largest = np.where(wide & (largest[facets.ids] == pieces), facets.ids, 0)
+    ends = ends_by_number(of_largest.ravel(), height.reshape(-1, 1), facets.count + 1)
+    low, high = (end[:, 0] for end in ends)
     with np.errstate(invalid="ignore"):
         beyond = (height < low[facets.ids] - LEAK) | (height > high[facets.ids] + LEAK)
     beyond &= facets.ids > 0
     leaks = np.bincount(facets.ids[beyond], minlength=facets.count + 1) >= LEAK_PIXELS
     kept = (facets.ids > 0) & (wide | ~leaks[facets.ids])
-    count, pieces = _connected(kept, same)
+    count, pieces = connected(kept, same)
     shared = np.where(wide, pieces, 0)
     spread(shared, facets.ids > 0, 2 * reach)
-    return Facets(pieces, count - 1, _borders(count, pieces, shared))
-
-
-def by_number(numbers: NDArray[Any], values: Array) -> Iterator[tuple[int, Array]]:
-    """Values by their numbers, those that there are: shapes (n,), (n,)."""
-    order = np.argsort(numbers, kind="stable")
-    found, begins = np.unique(numbers[order], return_index=True)
-    yield from zip(found.tolist(), np.split(values[order], begins[1:]))
-
-
-def _connected(pixels: Mask, links: Sequence[Mask]) -> tuple[int, Ids]:
-    """How many pieces linked pixels make, with that of no pixel, and the piece of each, from 1."""
-    ids = np.zeros(pixels.shape, np.int32)
-    left, top, width, height = cv2.boundingRect(pixels.view(np.uint8))
-    if width == 0:
-        return 1, ids
-    box = np.s_[top : top + height, left : left + width]
-    inner = pixels[box]
-    # Pixels on even rows and columns, the links between neighbours on odd ones.
-    lattice = np.zeros((2 * height - 1, 2 * width - 1), np.uint8)
-    lattice[::2, ::2] = inner
-    for axis, linked in enumerate(links):
-        low, high = _sides(axis)
-        between = linked[top : top + height - (axis == 0), left : left + width - (axis == 1)]
-        lattice[_between(axis)] = between & inner[low] & inner[high]
-    count, numbers = cv2.connectedComponents(lattice, connectivity=4)
-    ids[box] = numbers[::2, ::2]
-    return count, ids
-
-
-def spread(
-    labels: NDArray[Any],
-    free: Mask,
-    times: int,
-    links: Sequence[Mask] | None = None,
-    may: Callable[[NDArray[Any], NDArray[np.intp]], Mask] | None = None,
-) -> None:
-    """Gives free pixels without a label that of a neighbour: the one below, else above, or beside.
-
-    What is seen above a face is its lid or the ledge on which the next one stands.
-
-    Args:
-        labels: shape (h, w), changed.
-        free: which may be given one.
-        times: how many pixels far at most.
-        links: by axis, which neighbours labels pass between, (h - 1, w), (h, w - 1); None: all.
-        may: whether pixels, given as indices of the flattened image, may have such labels; None:
-            they may.
-    """
-    height, width = labels.shape
-    # Only the pixels without a label are looked at, which are few; a frame of no label is around.
-    todo = np.flatnonzero(free & (labels == 0))
-    rows, columns = np.divmod(todo, width)
-    framed = np.zeros((height + 2, width + 2), labels.dtype)
-    framed[1:-1, 1:-1] = labels
-    flat = framed.ravel()
-    at = (rows + 1) * (width + 2) + columns + 1
-    beside = at + np.array([[width + 2], [-width - 2], [1], [-1]])
-    passes = np.ones(beside.shape, bool)
-    if links is not None:
-        for axis in (0, 1):
-            linked = np.zeros((height + 1, width + 1), bool)
-            linked[1:, 1:][_sides(axis)[0]] = links[axis]
-            passes[2 * axis] = linked[rows + 1, columns + 1]
-            passes[2 * axis + 1] = linked[rows + axis, columns + 1 - axis]
-    for _ in range(times):
-        given = np.zeros(len(todo), labels.dtype)
-        for sources, passing in zip(beside, passes):
-            label = flat[sources]
-            takes = passing & (label > 0) & (given == 0)
-            if may is not None:
-                takes[takes] = may(label[takes], todo[takes])
-            given[takes] = label[takes]
-        left = given == 0
-        if left.all():
-            break
-        flat[at] = given
-        todo, at, beside, passes = todo[left], at[left], beside[:, left], passes[:, left]
-    labels[...] = framed[1:-1, 1:-1]
+    return Facets(pieces, count - 1, borders(count, pieces, shared))
 
 
 def on_one_body(points: Array, depth: Array) -> list[Mask]:
@@ -230,51 +175,122 @@ def on_one_body(points: Array, depth: Array) -> list[Mask]:
         points: in world, shape (h, w, 3) [m].
         depth: NaN where it is unknown, which is no jump, shape (h, w) [m].
     """
+    library = written(_FILE)
+    if library is None:
+        return bodies_by_numpy(points, depth)
+    own = [np.ascontiguousarray(array, np.float32) for array in (points, depth)]
+    steps = np.array([DEPTH_STEP, LID_STEP, LID_DEPTH], np.float32)
+    links = _none_linked(depth)
+    library.bodies(*depth.shape, *map(at, own), at(steps), *map(at, links))
+    return links
+
+
+def bodies_by_numpy(points: Array, depth: Array) -> list[Mask]:
+    """As :func:`on_one_body`."""
     links = []
     with np.errstate(invalid="ignore"):
         for axis in (0, 1):
-            low, high = _sides(axis)
+            low, high = sides(axis)
             jump = np.abs(depth[low] - depth[high])
             climb = np.abs(points[low][..., 2] - points[high][..., 2])
             links.append(~(jump > DEPTH_STEP) | ((climb < LID_STEP) & (jump < LID_DEPTH)))
     return links
 
 
-def _borders(count: int, *numbered: Ids) -> NDArray[np.int64]:
-    """Which facets meet by any of some numberings of pixels, and where: see :class:`Facets`."""
-    pairs = []
-    for ids in numbered:
-        for low, high in map(_sides, (0, 1)):
-            meet = (ids[low] > 0) & (ids[high] > 0) & (ids[low] != ids[high])
-            first, second = ids[low][meet].astype(np.int64), ids[high][meet].astype(np.int64)
-            pairs.append(np.stack([np.minimum(first, second), np.maximum(first, second)]))
-    first, second = np.concatenate(pairs, axis=1)
-    keys, lengths = np.unique(first * count + second, return_counts=True)
-    return np.column_stack([keys // count, keys % count, lengths])
+def _links(look: Look, depth: Array) -> Sequence[Mask]:
+    """Which neighbours are of one facet, by axis: (h - 1, w), (h, w - 1)."""
+    library = written(_FILE)
+    if library is None:
+        return links_by_numpy(look, depth)
+    own = [np.ascontiguousarray(array, np.float32) for array in (look.chroma, look.light, depth)]
+    steps = np.array([CHROMA_STEP**2, LIGHT_STEP, DEPTH_STEP], np.float32)
+    links = _none_linked(depth)
+    library.links(*depth.shape, *map(at, own), at(steps), *map(at, links))
+    return links
 
 
-def _sides(axis: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
-    """The two pixels of each pair of neighbours along an axis."""
-    before = (slice(None),) * axis
-    return (*before, slice(None, -1)), (*before, slice(1, None))
-
-
-def _between(axis: int) -> tuple[slice, slice]:
-    """Where the lattice holds the links along an axis."""
-    odd, even = slice(1, None, 2), slice(None, None, 2)
-    return (odd, even) if axis == 0 else (even, odd)
-
-
-def _linked(look: Look, depth: Array, low: tuple[slice, ...], high: tuple[slice, ...]) -> Mask:
-    """Whether neighbours are of one facet."""
+def links_by_numpy(look: Look, depth: Array) -> Sequence[Mask]:
+    """As :func:`_links`."""
+    links = []
     with np.errstate(invalid="ignore"):
-        jumps = np.abs(depth[low] - depth[high]) > DEPTH_STEP
-    return _same(look, low, high) & ~jumps
+        for low, high in map(sides, (0, 1)):
+            jumps = np.abs(depth[low] - depth[high]) > DEPTH_STEP
+            links.append(_same(look, low, high) & ~jumps)
+    return links
+
+
+def _none_linked(image: Array) -> list[Mask]:
+    height, width = image.shape
+    return [np.zeros((height - 1, width), bool), np.zeros((height, width - 1), bool)]
+
+
+class Sums(NamedTuple):
+    """What is known of F facets, in the order of their numbers, from 1; row 0 is of no facet.
+
+    Attributes:
+        pixels: how many.
+        sure: of how many the depth is sure.
+        colors: means of chroma and of light, shape (F, 4).
+        centres: means of the points, those whose depth is sure, unless it has fewer, (F, 3) [m].
+        spreads: of the points about them: xx, xy, xz, yy, yz, zz, shape (F, 6) [m²].
+    """
+
+    pixels: NDArray[np.int64]
+    sure: NDArray[np.int64]
+    colors: NDArray[np.float64]
+    centres: NDArray[np.float64]
+    spreads: NDArray[np.float64]
+
+
+def sums(facets: Facets, look: Look, points: Array, sure: Mask, few: int) -> Sums:
+    """Sums over the pixels of each facet.
+
+    Args:
+        points: in world, shape (h, w, 3) [m].
+        sure: where their depth is, shape (h, w).
+        few: facets with fewer sure points have all of them counted.
+    """
+    library, count = written(_FILE), facets.count + 1
+    if library is None:
+        return sums_by_numpy(facets, look, points, sure, few)
+    images = (facets.ids, sure, points, look.chroma, look.light)
+    own = [np.ascontiguousarray(image) for image in images]
+    found = Sums(
+        np.zeros(count, np.int64),
+        np.zeros(count, np.int64),
+        np.zeros((count, 4)),
+        np.zeros((count, 3)),
+        np.zeros((count, 6)),
+    )
+    library.sums(facets.ids.size, count, *map(at, own), few, *map(at, found))
+    return found
+
+
+def sums_by_numpy(facets: Facets, look: Look, points: Array, sure: Mask, few: int) -> Sums:
+    """As :func:`sums`."""
+    used = facets.ids > 0
+    ids, count = facets.ids[used], facets.count + 1
+    pixels = np.bincount(ids, minlength=count)
+    many_sure = np.bincount(ids[sure[used]], minlength=count)
+    counts = sure[used] | (many_sure < few)[ids]
+    relied = np.where(many_sure < few, pixels, many_sure)
+
+    def mean(values: NDArray[np.floating], of: Ids, total: NDArray[np.intp]) -> NDArray[np.float64]:
+        columns = [np.bincount(of, column, minlength=count) for column in values.T]
+        return np.stack(columns, axis=-1) / np.maximum(total, 1)[:, None]
+
+    colors = np.concatenate([look.chroma[used], look.light[used][:, None]], axis=1)
+    own, of = points[used][counts].astype(np.float64), ids[counts]
+    centres = mean(own, of, relied)
+    away = own - centres[of]
+    products = away[:, [0, 0, 0, 1, 1, 2]] * away[:, [0, 1, 2, 1, 2, 2]]
+    spreads = mean(products, of, relied)
+    return Sums(pixels, many_sure, mean(colors, ids, pixels), centres, spreads)
 
 
 def alike(look: Look, pixels: tuple[NDArray[np.intp], ...], step: tuple[int, int]) -> Mask:
     """Whether n pixels (rows, columns) look like those a step further, shape (n,)."""
-    return _same(look, pixels, tuple(at + by for at, by in zip(pixels, step)))
+    return _same(look, pixels, tuple(each + by for each, by in zip(pixels, step)))
 
 
 def _same(look: Look, first: Any, second: Any) -> Mask:

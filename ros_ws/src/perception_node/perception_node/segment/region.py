@@ -4,16 +4,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
+from tamp_runtime.machine_code import written
 
+from perception_node.camera import PinholeCamera
 from perception_node.observation import Observation
 
+from .pieces import at
 from .volume import Volume
 
 Array = NDArray[np.float32]
 Mask = NDArray[np.bool_]
+Box = tuple[slice, slice]
+
+_FILE: Final = Path(__file__).with_suffix(".c")
 
 
 @dataclass(frozen=True)
@@ -36,6 +44,21 @@ class Region:
     points: Array
     inside: Mask
 
+    def part(self, box: tuple[slice, slice]) -> Region:
+        """A smaller rectangle, given by its rows and columns of this one."""
+        where = tuple(
+            slice(outer.start + inner.start, outer.start + inner.stop)
+            for outer, inner in zip(self.box, box)
+        )
+        return Region(
+            (where[0], where[1]),
+            self.rgb[box],
+            self.depth[box],
+            self.sure[box],
+            self.points[box],
+            self.inside[box],
+        )
+
 
 def look_at(observation: Observation, volume: Volume) -> Region | None:
     """The part of a picture that shows a volume; None where none of it is in the picture.
@@ -51,9 +74,34 @@ def look_at(observation: Observation, volume: Volume) -> Region | None:
     part = np.ascontiguousarray(observation.rgb[box])
     near = depth[box].astype(np.float32)
     near[~(near > 0.0) | np.isinf(near)] = np.nan
-    points = camera.points_world(near, box)
-    inside = points[..., 2] < volume.high[2]
-    for axis in (0, 1):
-        inside &= (points[..., axis] > volume.low[axis]) & (points[..., axis] < volume.high[axis])
+    points, inside = _points(camera, near, box, volume)
     sure = ~np.isnan(near) if observation.sure is None else observation.sure[box]
     return Region(box, part, near, sure, points, inside)
+
+
+def _points(camera: PinholeCamera, depth: Array, box: Box, volume: Volume) -> tuple[Array, Mask]:
+    """Points in world, shape (h, w, 3) [m], and which are over or beside the places, (h, w)."""
+    library = written(_FILE)
+    if library is None:
+        return points_by_numpy(camera, depth, box, volume)
+    across, down = camera.rays_apart(box)
+    points, inside = np.empty((*depth.shape, 3), np.float32), np.empty(depth.shape, bool)
+    origin = camera.position_world.astype(np.float32)
+    arrays = (depth, across, down, origin, volume.low, volume.high, points, inside)
+    library.points(
+        *depth.shape, *map(at, map(np.ascontiguousarray, arrays[:-2])), at(points), at(inside)
+    )
+    return points, inside
+
+
+def points_by_numpy(
+    camera: PinholeCamera, depth: Array, box: Box, volume: Volume
+) -> tuple[Array, Mask]:
+    """As :func:`_points`."""
+    points = camera.points_world(depth, box)
+    with np.errstate(invalid="ignore"):
+        inside = points[..., 2] < volume.high[2]
+        for axis in (0, 1):
+            column = points[..., axis]
+            inside &= (column > volume.low[axis]) & (column < volume.high[axis])
+    return points, inside

@@ -8,7 +8,7 @@ large for a block, or hangs on something that is, is none: the arm, a hand, a wa
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import cv2
@@ -24,16 +24,15 @@ from perception_node.observation import Observation
 
 from .facets import (
     LEAK,
-    STRAY,
     Facets,
     Look,
     alike,
-    by_number,
     find_facets,
     on_one_body,
-    spread,
+    sums,
     without_leaks,
 )
+from .pieces import Heights, ends_by_number, spread
 from .region import Region, look_at
 from .segments import Segments
 from .unseen import check_all_seen
@@ -41,6 +40,7 @@ from .volume import Volume
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Box = tuple[slice, slice]
 
 #: What is lower than this over the table is the table [m].
 MIN_HEIGHT: Final = 0.003
@@ -147,25 +147,26 @@ class _Table:
 
 def _labels(region: Region, look: Look, volume: Volume, smear: int) -> NDArray[np.uint16]:
     """Labels of the blocks, 0 for all else, shape (h, w) of the region."""
-    table_height = volume.floor
+    labels = np.zeros(region.depth.shape, np.uint16)
     with np.errstate(invalid="ignore"):
-        candidates = region.inside & (region.points[..., 2] > table_height + MIN_HEIGHT)
-    if not candidates.any():
-        return np.zeros(candidates.shape, np.uint16)
-    reach = STRIP * smear
-    pieces = find_facets(candidates, look, region.depth)
-    facets = without_leaks(pieces, region.points[..., 2], reach)
-    table = _measure(facets, look, region, smear, reach)
+        candidates = region.inside & (region.points[..., 2] > volume.floor + MIN_HEIGHT)
+    left, top, width, height = cv2.boundingRect(candidates.view(np.uint8))
+    if width == 0:
+        return labels
+    # What stands on the table is a small part of what is seen of the volume.
+    lower, right = np.minimum((top + height + 1, left + width + 1), labels.shape).tolist()
+    box = np.s_[max(0, top - 1) : lower, max(0, left - 1) : right]
+    part, reach = region.part(box), STRIP * smear
+    pieces = find_facets(candidates[box], look.part(box), part.depth)
+    facets = without_leaks(pieces, part.points[..., 2], reach)
+    table = _measure(facets, look.part(box), part, smear, reach)
     groups = _group(facets, table)
-    block = _which_are_blocks(facets, table, groups, region.points, volume)
+    block = _which_are_blocks(facets, table, groups, part.points, volume)
     numbers = np.zeros(len(block), np.uint16)
     numbers[block] = np.arange(1, np.count_nonzero(block) + 1)
-    labels = numbers[groups][facets.ids]
-    with np.errstate(invalid="ignore"):
-        foot = region.inside & (region.points[..., 2] <= table_height + MIN_HEIGHT)
-        foot &= region.points[..., 2] > table_height - MAX_SUNK
-    _grow_down(labels, foot, look, region.points)
-    _take_strips(labels, pieces, region, 2 * reach + 1)
+    labels[box] = numbers[groups][facets.ids]
+    box = _grow_down(labels, box, region, look, volume.floor)
+    _take_strips(labels[box], pieces, region.part(box), 2 * reach + 1)
     return labels
 
 
@@ -177,80 +178,80 @@ def _take_strips(labels: NDArray[np.uint16], pieces: Facets, region: Region, wid
     as none goes to any.
 
     Args:
-        pieces: with strips.
+        pieces: with strips, of the region's upper part.
         width: of the strips at most [px].
     """
     height = region.points[..., 2]
-    low, high = np.zeros(int(labels.max()) + 1), np.zeros(int(labels.max()) + 1)
-    of_blocks = labels > 0
-    for label, own in by_number(labels[of_blocks], height[of_blocks]):
-        low[label], high[label] = np.percentile(own, STRAY)
-
-    def as_high(given: NDArray[np.uint16], at: NDArray[np.intp]) -> Mask:
-        own = height.flat[at]
-        with np.errstate(invalid="ignore"):
-            above = own > low[given] - SAME_HEIGHT
-            return np.asarray(above & (own < high[given] + SAME_HEIGHT))
-
+    numbers, values = labels.astype(np.int32).ravel(), height.reshape(-1, 1)
+    low, high = ends_by_number(numbers, values, int(labels.max()) + 1)
+    as_high = Heights(height, low[:, 0] - SAME_HEIGHT, high[:, 0] + SAME_HEIGHT)
+    lower = len(labels) - len(pieces.ids)
+    pieces = replace(pieces, ids=np.pad(pieces.ids, ((0, lower), (0, 0))))
     near = on_one_body(region.points, region.depth)
     alike = [link & same for link, same in zip(near, pieces.links())]
-    for links, may in ((alike, as_high), (near, as_high), (near, None)):
-        spread(labels, pieces.ids > 0, width, links, may)
+    for links, heights in ((alike, as_high), (near, as_high), (near, None)):
+        spread(labels, pieces.ids > 0, width, links, heights)
 
 
 def _grow_down(
-    labels: NDArray[np.uint16], foot: Mask, look: Look, points: NDArray[np.floating]
-) -> None:
+    labels: NDArray[np.uint16], box: Box, region: Region, look: Look, floor: float
+) -> Box:
     """Gives the pixels at a block's foot, too low to tell from the table by depth, its label.
 
     They are below it, not before it on the table.
+
+    Args:
+        labels: shape (h, w) of the region.
+        box: the part of it in which there are labels.
+        floor: height of the table [m].
+
+    Returns:
+        The part in which there are labels now: more rows of the same columns.
     """
-    rows, columns = pixels_of((labels[:-1] > 0) & (labels[1:] == 0) & foot[1:])
+    bottom, points, last = box[0].stop, region.points, len(labels) - 1
+
+    def goes_on(rows: NDArray[np.intp], columns: NDArray[np.intp]) -> Mask:
+        below = np.minimum(rows + 1, last)
+        height = points[below, columns, 2]
+        with np.errstate(invalid="ignore"):
+            foot = (height <= floor + MIN_HEIGHT) & (height > floor - MAX_SUNK)
+        free = (rows < last) & (labels[below, columns] == 0)
+        return np.asarray(free & foot & region.inside[below, columns])
+
+    own = labels[box] > 0
+    own[:-1] &= ~own[1:]
+    rows, columns = pixels_of(own)
+    rows, columns = rows + box[0].start, columns + box[1].start
     above = points[rows, columns, :2]
-    while len(rows):
+    while True:
+        on = goes_on(rows, columns)
+        rows, columns, above = rows[on], columns[on], above[on]
+        if not len(rows):
+            break
         with np.errstate(invalid="ignore"):
             away = np.abs(points[rows + 1, columns, :2] - above).max(axis=1, initial=0.0)
         grows = alike(look, (rows, columns), (1, 0)) & (away < BEFORE)
         rows, columns, above = rows[grows] + 1, columns[grows], above[grows]
         labels[rows, columns] = labels[rows - 1, columns]
-        goes_on = rows + 1 < len(labels)
-        goes_on[goes_on] &= foot[rows[goes_on] + 1, columns[goes_on]]
-        goes_on[goes_on] &= labels[rows[goes_on] + 1, columns[goes_on]] == 0
-        rows, columns, above = rows[goes_on], columns[goes_on], above[goes_on]
+        bottom = max(bottom, int(rows.max(initial=0)) + 1)
+    return slice(box[0].start, bottom), box[1]
 
 
 def _measure(facets: Facets, look: Look, region: Region, smear: int, strip: int) -> _Table:
-    used = facets.ids > 0
-    ids, count = facets.ids[used], facets.count + 1
-    pixels = np.bincount(ids, minlength=count)
-    # A face's points are those whose depth is sure, unless it has hardly any.
-    sure = region.sure[used]
-    many_sure = np.bincount(ids[sure], minlength=count)
-    counts = sure | (many_sure < FEW)[ids]
-    relied = np.where(many_sure < FEW, pixels, many_sure)
-
-    def mean(values: NDArray[np.floating], of: NDArray[np.int32], total: NDArray[np.intp]) -> Array:
-        flat = values.reshape(len(of), -1)
-        sums = [np.bincount(of, column, minlength=count) for column in flat.T]
-        return np.stack(sums, axis=-1) / np.maximum(total, 1)[:, None]
-
-    points, of = region.points[used][counts].astype(np.float64), ids[counts]
-    centre = mean(points, of, relied)
-    centred = points - centre[of]
-    products = centred[:, [0, 0, 0, 1, 1, 2]] * centred[:, [0, 1, 2, 1, 2, 2]]
-    spread = mean(products, of, relied)[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3)
+    found = sums(facets, look, region.points, region.sure, FEW)
+    centre, spread = found.centres, found.spreads[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3)
     normal = np.linalg.eigh(spread)[1][:, :, 0]
     # Of points that fill a face evenly these are its ends; a stray one does not move them far.
     reach = np.sqrt(3.0 * np.einsum("fii->fi", spread))
     level = (np.sqrt(spread[:, 2, 2]) < LEVEL) & (np.abs(normal[:, 2]) > 0.6)
     wide = np.sqrt(spread[:, 0, 0] + spread[:, 1, 1]) > LEVEL
     return _Table(
-        pixels,
-        many_sure,
+        found.pixels,
+        found.sure,
         _thick(facets, smear),
         _thick(facets, 2 * strip),
-        mean(look.chroma[used], ids, pixels),
-        mean(look.light[used], ids, pixels)[:, 0],
+        found.colors[:, :3],
+        found.colors[:, 3],
         centre,
         centre - reach,
         centre + reach,
@@ -347,10 +348,9 @@ def _which_are_blocks(
     count = int(groups.max()) + 1
     pixels = np.bincount(groups[1:], table.pixels[1:], minlength=count)
     some = pixels >= MIN_PIXELS
-    low, high = np.zeros((count, 3)), np.zeros((count, 3))
-    group_of = groups[facets.ids]
-    for group in np.flatnonzero(some):
-        low[group], high[group] = np.percentile(points[group_of == group], STRAY, axis=0)
+    group_of = np.where(some, np.arange(count), 0).astype(np.int32)[groups][facets.ids]
+    ends = ends_by_number(group_of.ravel(), points.reshape(-1, 3), count)
+    low, high = (np.where(some[:, None], end, 0.0) for end in ends)
     extent = high - low
     across = np.maximum(extent[:, 0], extent[:, 1])
     fits = some & (across < MAX_WIDTH) & (extent[:, 2] < MAX_HEIGHT)

@@ -67,11 +67,14 @@ class Segments:
         hides: Mask | None = None,
     ) -> Segments:
         """The segments of an image of non-negative labels, shape (height, width)."""
-        counts = np.bincount(label_image.ravel())
-        counts[:1] = 0
-        blocks = []
+        left, top, width, height = cv2.boundingRect((label_image > 0).view(np.uint8))
+        # Labels are in a part of the picture only.
+        box, blocks = np.s_[top : top + height, left : left + width], []
+        counts = np.bincount(label_image[box].ravel(), minlength=1)
+        counts[0] = 0
         for label in np.flatnonzero(counts >= max(1.0, MIN_AREA * label_image.size)):
-            mask = label_image == label
+            mask = np.zeros(label_image.shape, bool)
+            mask[box] = label_image[box] == label
             blocks.append(Segment(int(label), mask, largest_part(mask)))
         return cls(label_image, tuple(blocks), source, hides)
 
@@ -119,10 +122,10 @@ def largest_part(mask: Mask) -> Mask:
 
     The same array where there is nothing to leave out.
     """
-    rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))
-    if len(rows) == 0:
+    left, top, width, height = cv2.boundingRect(mask.view(np.uint8))
+    if width == 0:
         return mask
-    box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    box = np.s_[top : top + height, left : left + width]
     closed = cv2.morphologyEx(mask[box].astype(np.uint8), cv2.MORPH_CLOSE, _CRACK)
     count, parts, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8)
     if count <= 2:

@@ -10,7 +10,7 @@ import numpy as np
 from perception_node.errors import BadImageError
 from perception_node.masks import pixels_of
 
-from .facets import Look, Mask, find_facets
+from .facets import Look, Mask, facet_ids
 from .region import Region
 
 #: Of a thing that depth shows at least this part of the pixels has a depth.
@@ -59,21 +59,24 @@ def unseen(region: Region, look: Look, picture_area: int) -> Mask:
         picture_area: of the picture that the region is a part of [px].
     """
     everything, least = np.ones(region.depth.shape, bool), MIN_AREA * picture_area
-    if np.count_nonzero(~np.isfinite(region.depth)) <= (1.0 - MIN_DEPTH_SHARE) * least:
+    unknown, enough = ~np.isfinite(region.depth), (1.0 - MIN_DEPTH_SHARE) * least
+    if np.count_nonzero(unknown) <= enough:
         return ~everything
-    facets = find_facets(everything, look, region.depth)
-    pixels = np.bincount(facets.ids.ravel(), minlength=facets.count + 1)
-    known = np.bincount(facets.ids[np.isfinite(region.depth)], minlength=facets.count + 1)
-    bare = (pixels >= least) & (known < MIN_DEPTH_SHARE * pixels)
+    ids, count = facet_ids(everything, look, region.depth)
+    without = np.bincount(ids[unknown], minlength=count + 1)
+    if without.max() <= enough:
+        return ~everything
+    pixels = np.bincount(ids.ravel(), minlength=count + 1)
+    bare = (pixels >= least) & (pixels - without < MIN_DEPTH_SHARE * pixels)
     behind = bare & (pixels > MAX_PART * everything.size)
-    for edge in (facets.ids[0], facets.ids[:, 0], facets.ids[:, -1]):
+    for edge in (ids[0], ids[:, 0], ids[:, -1]):
         behind[edge] |= bare[edge]
     for facet in np.flatnonzero(bare & ~behind):
-        mine = facets.ids == facet
+        mine = ids == facet
         for other in np.flatnonzero(behind):
-            theirs = facets.ids == other
+            theirs = ids == other
             hue = look.chroma[mine].mean(axis=0) - look.chroma[theirs].mean(axis=0)
             light = look.light[mine].mean() - look.light[theirs].mean()
             if np.linalg.norm(hue) < SAME_HUE and abs(light) < SAME_LIGHT:
                 bare[facet] = False
-    return np.asarray((bare & ~behind)[facets.ids])
+    return np.asarray((bare & ~behind)[ids])

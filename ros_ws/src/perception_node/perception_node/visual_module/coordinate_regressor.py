@@ -43,7 +43,11 @@ class PointingRegressor(nn.Module):
 
     def forward(self, images: Tensor) -> Tensor:
         """u_i in 0..1, shape (n, 3, height, width) -> φ, shape (n, 2)."""
-        heat = self.heat(self.features(images)).float()
+        return self.pointed(self.heat(self.features(images)))
+
+    def pointed(self, heat: Tensor) -> Tensor:
+        """Where heat maps point to, shape (n, 2, rows, columns) -> φ, shape (n, 2)."""
+        heat = heat.float()
         n, _, rows, columns = heat.shape
         weights = heat.flatten(2).softmax(-1).view(n, 2, rows, columns)
         x = (torch.arange(columns, device=heat.device) + 0.5) / columns

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -65,3 +66,43 @@ def intersection_over_union(
     axes = (-2, -1)
     union = np.maximum(first, second).sum(axes, dtype=np.float64)
     return np.minimum(first, second).sum(axes, dtype=np.float64) / np.maximum(union, 1e-9)
+
+
+def translated_overlap(
+    coverage: NDArray[np.floating],
+    default: NDArray[np.floating],
+    crop_sizes: NDArray[np.intp],
+    moves: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """IoU of soft masks with crops that are moved to where they should be, see :func:`sample`.
+
+    Only where the crops come to lie is looked at.
+
+    Args:
+        coverage: shape (n, size, size).
+        default: the crops, at the bottom-left corner, zero elsewhere, likewise.
+        crop_sizes: their width and height, shape (n, 2) [px].
+        moves: right and up, shape (n, 2) [px].
+
+    Returns:
+        Shape (n,), in 0..1.
+    """
+    found = np.zeros(len(coverage))
+    for index, (seen, crop) in enumerate(zip(coverage, default)):
+        (width, height), (right, up) = crop_sizes[index], moves[index]
+        size = len(seen)
+        part = np.pad(crop[size - height :, :width].astype(np.float64), 1)
+        whole_right, whole_up = math.floor(right), math.floor(up)
+        right, up = right - whole_right, up - whole_up
+        # Bilinear: each pixel is shared by four, of which the last rows and columns are zero.
+        part = (1.0 - right) * part[:, 1:] + right * part[:, :-1]
+        part = (1.0 - up) * part[:-1] + up * part[1:]
+        top, left = size - height - whole_up - 1, whole_right
+        rows = slice(max(top, 0), max(top + len(part), 0))
+        columns = slice(max(left, 0), max(left + part.shape[1], 0))
+        mine = seen[rows, columns]
+        part = part[max(-top, 0) :, max(-left, 0) :][: mine.shape[0], : mine.shape[1]]
+        both = float(np.minimum(mine, part).sum())
+        union = float(seen.sum(dtype=np.float64)) + float(part.sum()) - both
+        found[index] = both / max(union, 1e-9)
+    return found

@@ -69,7 +69,7 @@ def object_images(
         size: side of the images [px].
     """
     count = len(segments)
-    source, target = _block_sides(rgb, size)
+    source, target = _block_sides(max(rgb.shape[:2]), size)
     rgb = _whole_blocks(rgb, source)
     images = np.zeros((count, 3, size, size), np.float32)
     coverage = np.zeros((count, size, size), np.float32)
@@ -132,12 +132,28 @@ def object_views(
             (begin + extent // 2 - side // 2) // step * step
             for begin, extent in ((left, width), (top, height))
         )
-        window = _window(segment.mask, first, side)
-        image, part = _scaled(_window(rgb, first, side), window, (size, size))
-        images[index], coverage[index] = image.transpose(2, 0, 1), part
+        # Scaled is what there is of it in the window, in whole blocks.
+        source, target = _block_sides(side, size)
         if segment.part is not segment.mask:
-            window = _window(segment.part, first, side)
-            image, part = _scaled(_window(rgb, first, side), window, (size, size))
+            left, top, width, height = cv2.boundingRect(segment.mask.view(np.uint8))
+        columns, rows = (
+            np.clip((begin // source, -(-end // source)), 0, side // source)
+            for begin, end in (
+                (left - first[0], left + width - first[0]),
+                (top - first[1], top + height - first[1]),
+            )
+        )
+        begin = (first[0] + source * columns[0], first[1] + source * rows[0])
+        blocks = (int(columns[1] - columns[0]), int(rows[1] - rows[0]))
+        shape, scaled_size = tuple(
+            (unit * blocks[0], unit * blocks[1]) for unit in (source, target)
+        )
+        window, own = _window(rgb, begin, shape), _window(segment.mask, begin, shape)
+        image, part = _scaled(window, own, scaled_size)
+        box = np.s_[target * rows[0] : target * rows[1], target * columns[0] : target * columns[1]]
+        images[(index, slice(None), *box)], coverage[index][box] = image.transpose(2, 0, 1), part
+        if segment.part is not segment.mask:
+            image, part = _scaled(window, _window(segment.part, begin, shape), scaled_size)
         rows, columns = np.flatnonzero(part.any(1)), np.flatnonzero(part.any(0))
         tight = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
         high, wide = part[tight].shape
@@ -151,26 +167,26 @@ def object_views(
     )
 
 
-def _window(image: NDArray[Any], first: tuple[int, ...], side: int) -> NDArray[Any]:
-    """A square of an image from the pixel (column, row) on; zero beyond its borders."""
-    out = np.zeros((side, side, *image.shape[2:]), image.dtype)
+def _window(image: NDArray[Any], first: tuple[int, ...], shape: tuple[int, ...]) -> NDArray[Any]:
+    """A part of an image, so wide and high, from the pixel (column, row) on; zero beyond it."""
+    width, height = shape
+    out = np.zeros((height, width, *image.shape[2:]), image.dtype)
     left, top = max(first[0], 0), max(first[1], 0)
-    part = image[top : max(first[1] + side, 0), left : max(first[0] + side, 0)]
+    part = image[top : max(first[1] + height, 0), left : max(first[0] + width, 0)]
     row, column = top - first[1], left - first[0]
     out[row : row + part.shape[0], column : column + part.shape[1]] = part
     return out
 
 
-def _block_sides(rgb: NDArray[np.uint8], size: int) -> tuple[int, int]:
+def _block_sides(longer: int, size: int) -> tuple[int, int]:
     """Sides of a block before and after scaling [px].
 
-    Scaling the longer side to ``size`` turns each block of ``source`` pixels into ``target``
+    Scaling a side, ``longer``, to ``size`` turns each block of ``source`` pixels into ``target``
     pixels, so parts of the image along block borders can be scaled on their own.
 
     Returns:
         source, target.
     """
-    longer = max(rgb.shape[:2])
     common = math.gcd(longer, size)
     return longer // common, size // common
 

@@ -13,10 +13,11 @@ from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from perception_node.segment import Segments
 
-from .coordinate_regressor import DEFAULT_BACKBONE, make_regressor
-from .coordinates import Coordinates, intersection_over_union
+from .coordinate_regressor import DEFAULT_BACKBONE, PointingRegressor, make_regressor
+from .coordinates import Coordinates, translated_overlap
 from .grid_sampler import pixels_from_coordinates, sample
-from .object_images import ObjectImages, object_images, object_views
+from .near_content import NearContent
+from .object_images import IMAGE_SIZE, ObjectImages, object_images, object_views
 
 #: Factor of the matrix α; 2 lets φ in 0..1 reach the whole image, where the thesis has 1.6.
 TRANSLATION_FACTOR: Final = 2.0
@@ -55,7 +56,10 @@ class VisualModule(nn.Module):
         for block in self.modules():
             if isinstance(block, nn.Sequential):
                 _fold_normalisation(block)
-        return self.to(memory_format=torch.channels_last)
+        self.to(memory_format=torch.channels_last)
+        if isinstance(self.regressor, PointingRegressor):
+            self.regressor = NearContent(self.regressor, IMAGE_SIZE)
+        return self
 
     def images(self, rgb: NDArray[np.uint8], segments: Segments) -> ObjectImages:
         """Views of the objects at one scale, or of the whole scene for what knows places only."""
@@ -68,9 +72,8 @@ class VisualModule(nn.Module):
         if len(objects) == 0:
             empty = np.zeros((0, 2))
             return Coordinates(empty, empty, empty, np.zeros(0))
-        images = torch.from_numpy(objects.images).contiguous(memory_format=torch.channels_last)
-        default = torch.from_numpy(objects.default_coverage[:, None])
-        phi, reconstructed = self(images, default)
+        images = torch.from_numpy(objects.images)
+        phi = self.regressor(images)
         size = images.shape[-1]
         moved = pixels_from_coordinates(phi, size, self.translation_factor)
         corners = objects.in_scene(moved.double().numpy() / size)
@@ -79,7 +82,12 @@ class VisualModule(nn.Module):
             phi=np.clip(2.0 / self.translation_factor * corners, 0.0, 1.0),
             corners=corners,
             centres=objects.in_scene(centres),
-            iou=intersection_over_union(objects.coverage, reconstructed[:, 0].numpy()),
+            iou=translated_overlap(
+                objects.coverage,
+                objects.default_coverage,
+                objects.crop_sizes,
+                moved.double().numpy(),
+            ),
         )
 
 

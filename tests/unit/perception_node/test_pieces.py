@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What C does with pixels is what numpy does with them."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from perception_scenes import PLACES, looking_camera
+
+from perception_node import alignment
+from perception_node.blocks import evidence
+from perception_node.blocks.quantiles import quantiles
+from perception_node.segment import Volume, facets, pieces, region
+from perception_node.segment.facets import Facets, Look
+from perception_node.segment.pieces import Heights
+
+seeds = st.integers(0, 10_000)
+sides = st.integers(3, 30)
+
+
+class Picture:
+    """A picture of few colours and depths, some of which are missing."""
+
+    def __init__(self, seed: int, height: int, width: int) -> None:
+        self.rng = np.random.default_rng(seed)
+        shape = (height, width)
+        scale = (-(-height // 4), -(-width // 4))
+        coarse = self.rng.integers(0, 256, (*scale, 3)).repeat(4, axis=0).repeat(4, axis=1)
+        grain = self.rng.integers(0, 9, (height, width, 3))
+        self.rgb = np.clip(coarse[:height, :width] + grain, 0, 255).astype(np.uint8)
+        depth = self.rng.uniform(0.8, 1.0, scale).repeat(4, axis=0).repeat(4, axis=1)
+        self.depth = (depth[:height, :width] + self.rng.normal(0, 0.003, shape)).astype(np.float32)
+        self.depth[self.rng.random(shape) < 0.2] = np.nan
+        self.points = self.rng.normal(0.0, 0.02, (*shape, 3)).astype(np.float32)
+        self.points[..., 2] += self.depth
+        self.mask = self.rng.random(shape) < 0.8
+        self.links = [
+            self.rng.random((height - 1, width)) < 0.8,
+            self.rng.random((height, width - 1)) < 0.8,
+        ]
+        ids = self.rng.integers(0, 6, scale).repeat(4, axis=0).repeat(4, axis=1)
+        self.ids = np.ascontiguousarray(ids[:height, :width]).astype(np.int32)
+        self.look = Look.of(self.rgb, 1.0)
+
+
+pictures = st.builds(Picture, seeds, sides, sides)
+
+
+def labelled(picture: Picture, links: bool, bounded: bool) -> Callable[[Any], Any]:
+    labels = np.where(picture.mask, 0, picture.ids).astype(np.uint16)
+    ends = [np.sort(picture.rng.uniform(0.7, 1.1, 6)) for _ in range(2)]
+    heights = Heights(picture.depth, np.minimum(*ends), np.maximum(*ends)) if bounded else None
+
+    def by(spread: Any) -> Any:
+        own = labels.copy()
+        spread(
+            own, picture.rng.random(own.shape) < 2.0, 3, picture.links if links else None, heights
+        )
+        return own
+
+    return by
+
+
+def same(fast: Any, slow: Any, tolerance: float = 0.0) -> None:
+    if isinstance(fast, tuple | list):
+        assert len(fast) == len(slow)
+        for one, other in zip(fast, slow):
+            same(one, other, tolerance)
+    else:
+        np.testing.assert_allclose(fast, slow, rtol=0.0, atol=tolerance)
+
+
+@given(pictures)
+def test_pieces_and_their_borders(picture: Picture) -> None:
+    fast = pieces.connected(picture.mask, picture.links)
+    same(fast, pieces.connected_by_opencv(picture.mask, picture.links))
+    count, ids = fast
+    same(pieces.borders(count, ids, picture.ids), pieces.borders_by_numpy(99, ids, picture.ids))
+
+
+@given(pictures, st.booleans(), st.booleans())
+def test_labels_that_spread(picture: Picture, links: bool, bounded: bool) -> None:
+    by = labelled(picture, links, bounded)
+    same(by(pieces.spread), by(pieces.spread_by_numpy))
+
+
+@given(pictures)
+def test_ends_of_values(picture: Picture) -> None:
+    values = picture.points.reshape(-1, 3)
+    args = (picture.ids.ravel(), values, 7)
+    same(pieces.ends_by_number(*args), pieces.ends_by_numpy(*args))
+
+
+@given(pictures)
+def test_links_of_facets(picture: Picture) -> None:
+    same(
+        facets._links(picture.look, picture.depth),
+        facets.links_by_numpy(picture.look, picture.depth),
+    )
+    args = (picture.points, picture.depth)
+    same(facets.on_one_body(*args), facets.bodies_by_numpy(*args))
+
+
+@given(pictures, st.integers(0, 8))
+def test_sums_over_facets(picture: Picture, few: int) -> None:
+    made = Facets(picture.ids, 6, np.zeros((0, 3), np.int64))
+    args = (made, picture.look, np.nan_to_num(picture.points), picture.mask, few)
+    same(tuple(facets.sums(*args)), tuple(facets.sums_by_numpy(*args)), 1e-9)
+
+
+@given(pictures, st.floats(1.0, 30.0))
+def test_the_look_of_colours(picture: Picture, noise: float) -> None:
+    look = Look.of(picture.rgb, noise)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(facets, "written", lambda _file: None)
+        slow = Look.of(picture.rgb, noise)
+    same(look.chroma, slow.chroma, 1e-6)
+    same(look.light, slow.light, 2e-6)
+
+
+@given(pictures, st.integers(1, 4))
+def test_edges_that_are_aligned(picture: Picture, reach: int) -> None:
+    rgb, depth = picture.rgb, picture.depth
+    same(alignment.fill(depth, rgb, reach), alignment.fill_by_numpy(depth, rgb, reach))
+    calls = [
+        lambda: alignment.sharpened(rgb, reach, 1.0),
+        lambda: alignment.without_edges(depth, reach),
+    ]
+    fast = [call() for call in calls]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(alignment, "written", lambda _file: None)
+        same(fast, [call() for call in calls])
+
+
+@given(pictures)
+def test_points_of_pixels(picture: Picture) -> None:
+    height, width = picture.depth.shape
+    camera, volume = looking_camera(), Volume.over(np.array(PLACES), 0.3)
+    args = (camera, picture.depth, np.s_[40 : 40 + height, 100 : 100 + width], volume)
+    (points, inside), slow = region._points(*args), region.points_by_numpy(*args)
+    same(points, slow[0], 1e-6)
+    # Where rounding decides nothing.
+    clear = np.abs(points[..., None] - np.stack([volume.low, volume.high], -1)).min((2, 3)) > 1e-5
+    same(inside[clear], slow[1][clear])
+
+
+@given(pictures, st.floats(0.0, 0.01))
+def test_ends_of_blocks(picture: Picture, noise: float) -> None:
+    mask = np.zeros(picture.mask.shape, bool)
+    mask[1:-1, 1:-1] = picture.ids[1:-1, 1:-1] > 2
+    args = (mask, ~picture.mask, picture.depth.astype(np.float64), noise)
+    same(evidence._ends(*args), evidence.ends_by_numpy(*args))
+
+
+@given(st.integers(1, 50), st.floats(0.0, 1.0), seeds)
+def test_quantiles_are_those_of_numpy(count: int, share: float, seed: int) -> None:
+    values = np.random.default_rng(seed).normal(size=(count, 2))
+    expected = np.quantile(values, [share, 0.5], axis=0)
+    np.testing.assert_allclose(quantiles(values, share, 0.5), expected, rtol=0.0, atol=1e-12)
