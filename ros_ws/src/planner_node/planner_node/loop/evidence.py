@@ -123,8 +123,8 @@ class Evidence:
     @property
     def doubts(self) -> bool:
         """Whether anything in the newest frame speaks against the plan, though not for certain."""
-        return any(self._suspicions[name].finding.frames < FOREIGN_FRAMES
-                   for name in self._fresh if name in self._suspicions)  # fmt: skip
+        found = [self._suspicions[name].finding for name in self._fresh if name in self._suspicions]
+        return any(item.kind is not Kind.FOREIGN or item.frames < FOREIGN_FRAMES for item in found)
 
     def is_in_place(self, name: str) -> bool:
         """Whether a block is seen in the newest frame where it is to rest."""
@@ -199,6 +199,11 @@ class Evidence:
                 if item is not None:
                     kind, where = Kind.ELSEWHERE, item.position_world
                 self._suspect(Finding(name, kind, options[-1], where, 1 + doubt + held), steps)
+            elif item is not None and item.confidence >= PLAINLY:
+                # It may be what hides where it was to be.
+                where = item.position_world
+                finding = Finding(name, Kind.ELSEWHERE, options[-1], where, FOREIGN_FRAMES)
+                self._suspect(finding, steps)
             return
         if item.confidence < MIN_VISIBLE:
             return
