@@ -351,6 +351,13 @@ def test_a_block_that_is_gone_is_missed_only_where_nothing_hides_its_place() -> 
     )
 
 
+def test_a_block_that_is_gone_is_doubted_where_less_than_half_of_it_can_be_hidden() -> None:
+    _, watch, course = course_of(2)
+    falling: dict[str, Any] = {"moved": {"green_box": None}, "hidden": (0.0, 0.04, 0.0)}
+    assert watch_sees(watch, course[6].frame(**falling)) is Sight.DOUBTFUL
+    assert watch.see(course[7].frame(**falling))
+
+
 def test_a_block_of_which_little_is_seen_contradicts_nothing() -> None:
     _, watch, course = course_of(2)
     for item in course:
