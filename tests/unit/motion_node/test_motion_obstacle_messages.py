@@ -21,7 +21,6 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from motion_node import surroundings
 from motion_node.conversions import obstacles_from_markers
-from motion_node.dense_check import Checked
 from motion_node.frames import check_frame
 from motion_node.obstacles import MOST, Obstacle
 from motion_node.surroundings import Heard, Planners, Surroundings
@@ -190,15 +189,17 @@ def test_the_same_again_is_no_news() -> None:
     assert around.all is before
 
 
-def test_a_motion_under_way_is_looked_after_before_a_planner_is_built(
-    monkeypatch: pytest.MonkeyPatch,
+@pytest.mark.parametrize("barred", [False, True])
+def test_a_motion_under_way_is_looked_at_and_stopped_before_a_planner_is_built(
+    monkeypatch: pytest.MonkeyPatch, barred: bool
 ) -> None:
     """Building holds up the thread that follows the arm, which meanwhile goes on."""
-    order, asked = list[str](), threading.Event()
+    order, asked, rests = list[str](), threading.Event(), threading.Event()
 
-    def looks(*_around: Any, **_since: Any) -> Checked:
+    def looks(*_around: Any, **_since: Any) -> Any:
         order.append("looked")
-        return Checked(np.inf, ())
+        contacts = [SimpleNamespace(other="wall", body="hand")] if barred else []
+        return SimpleNamespace(contacts=contacts)
 
     def make(_obstacles: Sequence[Obstacle]) -> Any:
         order.append("made")
@@ -206,7 +207,7 @@ def test_a_motion_under_way_is_looked_after_before_a_planner_is_built(
 
     def moves() -> bool:
         asked.set()
-        return True
+        return not rests.is_set()
 
     monkeypatch.setattr(surroundings, "dense_check", looks)
     monkeypatch.setattr(surroundings, "LOOKS", 60.0)
@@ -220,6 +221,12 @@ def test_a_motion_under_way_is_looked_after_before_a_planner_is_built(
     building.start()
     assert asked.wait(60.0)
     motion: Any = SimpleNamespace(trajectory=None, floor=0.0)
-    assert planners.in_the_way(motion, scene((1, 0, 0)), 0.0) == ""
+    found = planners.in_the_way(motion, scene((1, 0, 0)), 0.0)
+    assert found == ("obstacle wall is in the way of the hand" if barred else "")
+    if barred:
+        asked.clear()
+        assert asked.wait(60.0)  # it goes on waiting
+        order.append("rests")
+        rests.set()
     building.join(60.0)
-    assert order == ["made", "looked", "made"]
+    assert order == ["made", "looked", *(["rests"] if barred else []), "made"]

@@ -137,7 +137,7 @@ class MotionNode(Node):
                 planner, now, at, graph, plan.moves, choices=choices_of(first)
             ),
         )
-        self._moving = lambda: executive.report.state is MotionState.EXECUTING
+        self._moving = lambda: follower.under_way
         self._worker = PlanWorker(
             executive, condition, self._publish, self._on_defect, self._presence.conflict
         )

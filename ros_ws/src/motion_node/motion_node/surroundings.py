@@ -20,8 +20,8 @@ from .motion import Motion
 from .obstacles import Obstacle, ObstacleError
 from .planner import MotionPlanner
 
-#: So long a motion under way may take to be looked at before a planner is built [s].
-LOOKS: Final = 1.0
+#: So long a planner is not built while a motion under way is looked at, or is being stopped [s].
+LOOKS: Final = 3.0
 
 #: A message's obstacles by name.
 Heard = dict[str, tuple[Obstacle, ...]]
@@ -130,9 +130,9 @@ class Planners:
         """Builds what the obstacles of now need; None: it is there, or nothing is described yet.
 
         Args:
-            moving: whether the arm follows a motion. Then it is first seen to that nothing is in
-                its way, as building holds up the thread that follows it, for seconds where many
-                share a core.
+            moving: whether the arm follows a motion. Then it is first looked whether anything is in
+                its way, and the arm stopped if so, as building holds up the thread that does this,
+                for seconds where many share a core.
         """
         obstacles, until = self._around.all, time.monotonic() + LOOKS
         while moving() and self._looked is not self._around.all and time.monotonic() < until:
@@ -164,7 +164,7 @@ class Planners:
     def in_the_way(self, motion: Motion, graph: SceneGraph, since: float) -> str:
         """What has come into the rest of a motion's way since it was planned; empty: nothing.
 
-        Looks only if the obstacles are others than at the last look; for the thread that plans.
+        Looks only if the obstacles are others than when nothing was; for the thread that plans.
 
         Args:
             graph: the scene before the motion.
@@ -174,17 +174,15 @@ class Planners:
         if obstacles is self._looked or planner is None:
             return ""
         names = {item.name for item in obstacles}
-        try:
-            found = dense_check(
-                *(planner.model, motion.trajectory, read_scene(graph), obstacles),
-                floor=motion.floor,
-                since=since,
-            )
-        finally:
-            self._looked = obstacles
+        found = dense_check(
+            *(planner.model, motion.trajectory, read_scene(graph), obstacles),
+            floor=motion.floor,
+            since=since,
+        )
         for contact in found.contacts:
             if contact.other in names:
                 return f"obstacle {contact.other} is in the way of the {contact.body}"
+        self._looked = obstacles
         return ""
 
     def _fitting(self, obstacles: Sequence[Obstacle]) -> MotionPlanner | None:
