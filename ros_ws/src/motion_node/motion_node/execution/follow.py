@@ -296,7 +296,7 @@ class Follower:
     def _goes_on(
         self, running: Trajectory, at: float, brake: Trajectory, begun: ArmState, state: ArmState
     ) -> bool:
-        """Whether an arm that was to brake is where it would be had it not: it was told too late."""
+        """Whether an arm that was to brake goes on instead: it was told too late."""
         elapsed = state.stamp - begun.stamp
         if elapsed < _OBEYS_SECONDS:
             return False
