@@ -104,6 +104,30 @@ def test_an_obstacle_in_the_way_stops_the_arm_at_once_and_is_told(
     assert bench.planner.ways_home == [done]
 
 
+@pytest.mark.parametrize("deaf", [False, True])
+def test_an_arm_that_went_on_while_its_way_was_looked_at_is_stopped_where_it_is_by_then(
+    bench: Bench, deaf: bool
+) -> None:
+    """Its controller refuses to brake from elsewhere, and may not have heard the first time."""
+    arm, first = bench.arm, two_moves().intervals[0]
+
+    def looks_long(at: float) -> str:
+        if at < 0.2 * first.end:
+            return ""
+        arm.pass_time(0.1 if deaf else 0.3)
+        arm.deaf, hears = deaf, arm.now() + 0.06
+        arm.when(lambda: arm.now() > hears, lambda: setattr(arm, "deaf", False))
+        return "obstacle wall is in the way of the hand"
+
+    bench.in_the_way = looks_long
+    end = bench.carry_out()
+    assert end.message.endswith("the arm was stopped; the arm is home")
+    (brake, joints), *_ = arm.sent[-2:]
+    assert brake.intervals[-1].phase == first.phase
+    assert np.abs(brake.positions.arm[0] - joints.arm).max() < 0.1
+    assert len(arm.sent) == 3 + deaf  # the plan, the brake, again if nobody heard, the way home
+
+
 def test_an_obstacle_in_the_way_of_a_block_stops_it_before_it_is_put_down(bench: Bench) -> None:
     way = two_moves().intervals[2]
     middle = (way.start + way.end) / 2

@@ -9,13 +9,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from executive_bench import Bench
-from simulated_arm import BESIDE, BLOCKS, PLAN, SWITCHES
+from simulated_arm import BESIDE, BLOCKS, HALF_BLOCK, PLAN, SWITCHES
 from tamp_runtime.motion_report import MotionReason, MotionReport, MotionState
 
 from motion_node.execution.arm_state import ArmState
 from motion_node.execution.last_look import (
     BEFORE_HAND,
     GIVES_UP,
+    INSIDE,
     OLDEST,
     RECENT,
     LastLook,
@@ -176,6 +177,38 @@ def test_doubt_that_comes_while_fingers_close_opens_them_again(bench: Bench) -> 
     assert sight == [Sight.SEEN]  # so they were open again
     assert len(bench.arm.sent) == 3  # all of it, the opening of the fingers, and the rest
     assert bench.arm.at_home()
+
+
+def takes(bench: Bench, move: int) -> bool:
+    """Whether a block was reported as lifted."""
+    return any((item.phase, item.move) == ("place", move) for item in bench.reports)
+
+
+@pytest.mark.parametrize("move", [0, 1])
+def test_fingers_that_meet_nothing_open_before_they_lift(bench: Bench, move: int) -> None:
+    """The block goes when the hand is over it, and no picture shows that."""
+    seeing(bench, lambda now: Sight.SEEN if now != move else before[0])
+    before: list[Sight] = [Sight.SEEN]
+
+    def go() -> None:
+        bench.arm.block, before[0] = 0.0, Sight.HIDDEN
+
+    bench.arm.when(
+        lambda: float(np.abs(bench.arm.joints.arm - SWITCHES[2 * move]).max()) < 0.05, go
+    )
+    end = bench.carry_out(WATCHED)
+    assert (end.reason, end.held, end.moves_done) == (MotionReason.UNSEEN, "", move)
+    assert not takes(bench, move)
+    assert bench.arm.at_home()
+
+
+def test_a_block_that_is_seen_after_fingers_met_nothing_is_taken(bench: Bench) -> None:
+    """It was measured too wide. An older picture says nothing."""
+    bench.arm.block = HALF_BLOCK - 2 * INSIDE
+    seeing(bench, lambda _move: Sight.SEEN)
+    assert bench.carry_out(WATCHED).state is MotionState.SUCCEEDED
+    assert takes(bench, 0)
+    assert len(bench.arm.sent) == 5  # at both blocks the fingers opened, and closed again
 
 
 def test_only_a_recent_picture_of_this_plan_and_move_counts() -> None:

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Mapping, Sequence
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,15 +13,17 @@ import pytest
 from geometry_msgs.msg import Point, Quaternion
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from motion_scenes import scene
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from tamp_runtime.motion_report import MotionReport, ObstaclesHeard
 from visualization_msgs.msg import Marker, MarkerArray
 
+from motion_node import surroundings
 from motion_node.conversions import obstacles_from_markers
 from motion_node.frames import check_frame
 from motion_node.obstacles import MOST, Obstacle
-from motion_node.surroundings import Heard, Surroundings
+from motion_node.surroundings import Heard, Planners, Surroundings
 
 Array = NDArray[np.float64]
 
@@ -183,3 +187,46 @@ def test_the_same_again_is_no_news() -> None:
     before = around.all
     around.hear(lambda known: read(marker(), known=known))
     assert around.all is before
+
+
+@pytest.mark.parametrize("barred", [False, True])
+def test_a_motion_under_way_is_looked_at_and_stopped_before_a_planner_is_built(
+    monkeypatch: pytest.MonkeyPatch, barred: bool
+) -> None:
+    """Building holds up the thread that follows the arm, which meanwhile goes on."""
+    order, asked, rests = list[str](), threading.Event(), threading.Event()
+
+    def looks(*_around: Any, **_since: Any) -> Any:
+        order.append("looked")
+        contacts = [SimpleNamespace(other="wall", body="hand")] if barred else []
+        return SimpleNamespace(contacts=contacts)
+
+    def make(_obstacles: Sequence[Obstacle]) -> Any:
+        order.append("made")
+        return SimpleNamespace(model=None, obstacles=())
+
+    def moves() -> bool:
+        asked.set()
+        return not rests.is_set()
+
+    monkeypatch.setattr(surroundings, "dense_check", looks)
+    monkeypatch.setattr(surroundings, "LOOKS", 60.0)
+    around = Surroundings(())
+    planners = Planners(around)
+    planners.describe(make)
+    planners.now()
+    wall = Obstacle("wall", (0.1, 0.1, 0.1), (0.5, 0.1, 0.05))
+    assert around.hear(lambda _known: {"wall": (wall,)})
+    building = threading.Thread(target=planners.build, args=(moves,))
+    building.start()
+    assert asked.wait(60.0)
+    motion: Any = SimpleNamespace(trajectory=None, floor=0.0)
+    found = planners.in_the_way(motion, scene((1, 0, 0)), 0.0)
+    assert found == ("obstacle wall is in the way of the hand" if barred else "")
+    if barred:
+        asked.clear()
+        assert asked.wait(60.0)  # it goes on waiting
+        order.append("rests")
+        rests.set()
+    building.join(60.0)
+    assert order == ["made", "looked", *(["rests"] if barred else []), "made"]

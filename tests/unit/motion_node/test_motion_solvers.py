@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from motion_scenes import random_heights, random_moves, scene
@@ -40,6 +42,18 @@ def test_every_solver_finds_what_is_out_of_reach_infeasible(urdf: str, name: str
     with pytest.raises(InfeasibleError) as caught:
         planner.solve(graph, [Move(0, 2)], planner.model.home, OPEN)
     assert (caught.value.bound, caught.value.phase) == (POSE, "place")
+
+
+@pytest.mark.parametrize("away", [0.03, 0.05])
+def test_a_block_that_stands_beside_its_place_is_put_back(
+    planner: MotionPlanner, away: float
+) -> None:
+    """Once it is lifted nothing stands where it stood, over which it reaches in its place."""
+    graph = scene((1, 0, 0, 1), places=[(0.5, -0.15), (0.5, 0.0), (0.5, 0.15), (0.5 + away, 0.0)])
+    places = tuple(replace(place, aside=place.index == 3) for place in graph.places)
+    graph = replace(graph, places=places)
+    motion = planner.solve(graph, [Move(3, 1)], planner.model.home, OPEN)
+    assert [phase.object_name for phase in motion.phases] == ["green_box", "green_box", ""]
 
 
 def test_an_unknown_solver_is_refused_by_name(urdf: str) -> None:

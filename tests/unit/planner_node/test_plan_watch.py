@@ -299,6 +299,17 @@ def test_a_block_that_fell_is_told_by_its_colour_and_by_where_it_lies() -> None:
     assert watch.contradiction.startswith("green_box was expected on stack1 and is seen 78 mm")
 
 
+def test_a_block_that_lies_before_its_place_and_hides_it_is_believed_once_it_stays_there() -> None:
+    """A part of the arm that looks like it does not stay."""
+    _, watch, course = course_of(2)
+    for index, item in enumerate(course[2:6]):
+        passing = {"green_box": (0.62, -0.02 * index, 0.02)}
+        assert not watch.see(item.frame(fallen=passing, hidden=(0.0, 0.11, 0.0)))
+        assert watch.sight is not None and watch.sight.sight is Sight.DOUBTFUL
+    lying: dict[str, Any] = {"fallen": {"green_box": (0.62, 0.03, 0.02)}, "hidden": (0.0, 0.1, 0.0)}
+    assert [watch.see(item.frame(**lying)) for item in course[6:9]] == [False, False, True]
+
+
 def test_a_block_that_is_measured_badly_where_it_stands_contradicts_nothing() -> None:
     _, watch, course = course_of(2)
     x, y, z = centre(1, 0)
@@ -338,6 +349,13 @@ def test_a_block_that_is_gone_is_missed_only_where_nothing_hides_its_place() -> 
     assert watch.contradiction == (
         "green_box was expected on stack1 and is not seen any more since move 2 of 3"
     )
+
+
+def test_a_block_that_is_gone_is_doubted_where_less_than_half_of_it_can_be_hidden() -> None:
+    _, watch, course = course_of(2)
+    falling: dict[str, Any] = {"moved": {"green_box": None}, "hidden": (0.0, 0.04, 0.0)}
+    assert watch_sees(watch, course[6].frame(**falling)) is Sight.DOUBTFUL
+    assert watch.see(course[7].frame(**falling))
 
 
 def test_a_block_of_which_little_is_seen_contradicts_nothing() -> None:

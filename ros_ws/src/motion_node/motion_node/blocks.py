@@ -28,6 +28,8 @@ from .errors import InvalidPlanError
 MAX_LEAN = 0.3
 #: A stack that stands farther than this from the centre of its place is worth mentioning [m].
 ASIDE = 0.02
+#: So far under the table a stack ends that is none [m].
+NOTHING = 0.1
 #: Shapes that look the same from above however they are turned.
 ROUND = (CYLINDER, SPHERE)
 
@@ -98,7 +100,9 @@ class Scene:
 
 def _column(stack: Sequence[Block], place: Place, floor: float) -> Column:
     if not stack:
-        return Column(place.position_world[:2], (0.0, 0.0), floor)
+        # Where a block stood beside the places something may be put that reaches over it.
+        top = floor - NOTHING if place.aside else floor
+        return Column(place.position_world[:2], (0.0, 0.0), top)
     boxes = [(block.position_world, block.half_world) for block in stack]
     (left, right), (near, far) = (
         (min(p[i] - h[i] for p, h in boxes), max(p[i] + h[i] for p, h in boxes)) for i in (0, 1)

@@ -137,6 +137,7 @@ class MotionNode(Node):
                 planner, now, at, graph, plan.moves, choices=choices_of(first)
             ),
         )
+        self._moving = lambda: follower.under_way
         self._worker = PlanWorker(
             executive, condition, self._publish, self._on_defect, self._presence.conflict
         )
@@ -231,7 +232,7 @@ class MotionNode(Node):
             planner.prepare(PREPARED_STACKS, moves)
 
     def _build(self) -> None:
-        if (planner := self._planners.build()) is not None:
+        if (planner := self._planners.build(self._moving)) is not None:
             self._prepare(planner)
 
     def _on_obstacles(self, message: MarkerArray) -> None:

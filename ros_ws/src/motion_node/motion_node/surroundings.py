@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import Final
 
 from tamp_runtime.motion_report import MotionReport, ObstaclesHeard
 
@@ -17,6 +19,9 @@ from .dense_check import check as dense_check
 from .motion import Motion
 from .obstacles import Obstacle, ObstacleError
 from .planner import MotionPlanner
+
+#: So long a planner is not built while a motion under way is looked at, or is being stopped [s].
+LOOKS: Final = 3.0
 
 #: A message's obstacles by name.
 Heard = dict[str, tuple[Obstacle, ...]]
@@ -121,9 +126,17 @@ class Planners:
             self._make, self._built = make, {_capacity(obstacles): made}
         return made
 
-    def build(self) -> MotionPlanner | None:
-        """Builds what the obstacles of now need; None: it is there, or nothing is described yet."""
-        obstacles = self._around.all
+    def build(self, moving: Callable[[], bool] = lambda: False) -> MotionPlanner | None:
+        """Builds what the obstacles of now need; None: it is there, or nothing is described yet.
+
+        Args:
+            moving: whether the arm follows a motion. Then it is first looked whether anything is in
+                its way, and the arm stopped if so, as building holds up the thread that does this,
+                for seconds where many share a core.
+        """
+        obstacles, until = self._around.all, time.monotonic() + LOOKS
+        while moving() and self._looked is not self._around.all and time.monotonic() < until:
+            time.sleep(0.01)
         with self._lock:
             make = self._make
             if make is None or self._fitting(obstacles) is not None:
@@ -151,7 +164,7 @@ class Planners:
     def in_the_way(self, motion: Motion, graph: SceneGraph, since: float) -> str:
         """What has come into the rest of a motion's way since it was planned; empty: nothing.
 
-        Looks only if the obstacles are others than at the last look; for the thread that plans.
+        Looks only if the obstacles are others than when nothing was; for the thread that plans.
 
         Args:
             graph: the scene before the motion.
@@ -160,7 +173,6 @@ class Planners:
         obstacles, planner = self._around.all, self._current
         if obstacles is self._looked or planner is None:
             return ""
-        self._looked = obstacles
         names = {item.name for item in obstacles}
         found = dense_check(
             *(planner.model, motion.trajectory, read_scene(graph), obstacles),
@@ -170,6 +182,7 @@ class Planners:
         for contact in found.contacts:
             if contact.other in names:
                 return f"obstacle {contact.other} is in the way of the {contact.body}"
+        self._looked = obstacles
         return ""
 
     def _fitting(self, obstacles: Sequence[Obstacle]) -> MotionPlanner | None:

@@ -26,6 +26,8 @@ from .settings import ExecutionSettings
 _FRESH_SECONDS: Final = 1.0
 #: Fingers that were told to close and have not moved by then are held apart [s].
 FEEL_SECONDS: Final = 3.0
+#: After so long an arm has begun to do what it was told [s].
+_OBEYS_SECONDS: Final = 0.1
 #: The least that is left of a trajectory that ends before a grasp [s].
 _SHORTEST_SECONDS: Final = 0.01
 #: What an arm does that has not been given a trajectory.
@@ -71,7 +73,8 @@ class Follower:
         self.grip = Grip()
         self._trajectory: Trajectory | None = None
         self.under_way, self.let_go_of, self.moves_done = False, "", 0
-        self.time = 0.0
+        self.time = self._stamp = 0.0
+        self._judged = False  # what the hand holds is known from its fingers
 
     @property
     def interval(self) -> Interval:
@@ -188,7 +191,7 @@ class Follower:
             watched = replace(watched, max_lag=min(watched.max_lag, stepping.apart))
         monitor = Monitor(trajectory, state, watched)
         begin, self._trajectory, self.time = self._arm.now(), trajectory, 0.0
-        self.under_way, self.let_go_of = True, ""
+        self.under_way, self.let_go_of, self._judged = True, "", False
         self._send(trajectory, begins)
         told = False
         try:
@@ -200,7 +203,7 @@ class Follower:
                 if told is monitor.started and (told or self._arm.now() - begin > NOTICE_SECONDS):
                     told = not told
                     self.on_waiting("the arm has not set out yet" if told else "")
-                self.time = monitor.time
+                self.time, self._stamp = monitor.time, state.stamp
                 self._note_grip()
                 on_progress(trajectory, monitor.time)
                 if verdict is Verdict.ARRIVED:
@@ -252,23 +255,54 @@ class Follower:
             ExecutionError: if the arm does not come to rest, or joint states stay out.
         """
         assert self._trajectory is not None
-        self._trajectory = self._trajectory.brake(self.time, self.LEAD, self.settings.brake_seconds)
-        self.under_way, self.time = False, 0.0
-        self.grip = replace(self.grip, sent=float(np.mean(self._trajectory.positions.fingers[-1])))
-        self._send(self._trajectory, None)
+        running = self._trajectory
+        at, since = self.time, self._stamp
+        if (newest := self._arm.newest()) is not None:
+            # Whoever asks to brake may have taken a while, in which the arm went on.
+            at, since = at + max(0.0, newest.stamp - since), max(newest.stamp, since)
+        brake = self._send_brake(running, at)
         patience = self._patience()
-        first = state = patience.wait(self._arm.newest())
+        first = begun = state = patience.wait(self._arm.newest())
         # Fingers that press on a block do not move when they are first sent back.
-        duration = self._trajectory.duration
-        while state.resting < 0.15 or state.stamp - first.stamp < max(0.15, duration):
-            if state.stamp - first.stamp > duration + 5.0:
+        while state.resting < 0.15 or state.stamp - begun.stamp < max(0.15, brake.duration):
+            if state.stamp - first.stamp > brake.duration + 5.0:
                 raise ExecutionError(
                     MotionReason.TRACKING_LOST,
                     "the arm does not stop when asked to",
                     recoverable=True,
                 )
             state = patience.wait(state)
+            now = at + state.stamp - since
+            if now < running.duration and self._goes_on(running, now, brake, begun, state):
+                brake, begun = self._send_brake(running, now), state
+        self.under_way, self.time = False, 0.0
         return state
+
+    def _send_brake(self, running: Trajectory, at: float) -> Trajectory:
+        """Sends what brakes along a trajectory from a time on.
+
+        What the hand holds is as then, but where fingers were found to be elsewhere.
+        """
+        self._trajectory, self.time = running, min(at, running.duration)
+        if not self._judged:
+            self._note_grip()
+        brake = running.brake(self.time, self.LEAD, self.settings.brake_seconds)
+        self._trajectory = brake
+        sent = float(np.mean(brake.positions.fingers[-1]))
+        self.grip = replace(self.grip, sent=sent, known=False)
+        self._send(brake, None)
+        return brake
+
+    def _goes_on(
+        self, running: Trajectory, at: float, brake: Trajectory, begun: ArmState, state: ArmState
+    ) -> bool:
+        """Whether an arm that was to brake goes on instead: it was told too late."""
+        elapsed = state.stamp - begun.stamp
+        if elapsed < _OBEYS_SECONDS:
+            return False
+        away, _ = state.positions.furthest(brake.sample(elapsed)[0])
+        off, _ = state.positions.furthest(running.sample(at)[0])
+        return bool(away > 2 * self.START_TOLERANCE and off < self.START_TOLERANCE)
 
     def stand_before(self, grasp: Interval) -> None:
         """Goes on to where the fingers are to close, and stands there; they are open.
@@ -348,7 +382,7 @@ class Follower:
     def _object(
         self, verdict: Verdict, monitor: Monitor, state: ArmState, in_step: InStep | None
     ) -> None:
-        block = monitor.block
+        block, self._judged = monitor.block, True
         if in_step and verdict is Verdict.FINGERS_TOO_NARROW:
             block = in_step.block()
         if verdict in (Verdict.NOT_OPENED, Verdict.FINGERS_TOO_NARROW) and block is not None:

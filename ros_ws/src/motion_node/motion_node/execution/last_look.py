@@ -4,7 +4,7 @@
 Of a plan that is watched the planner tells picture by picture what it sees. Most often it has just
 told it when the hand arrives, and nothing is waited for. Where it has not, or what it saw last is
 doubtful, the hand stands at the switch with open fingers. Fingers that are closing open again when
-a picture brings doubt: as long as nothing is lifted nothing is lost.
+a picture brings doubt, or when they meet nothing: as long as nothing is lifted nothing is lost.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ import threading
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Final
+
+import numpy as np
 
 from scene_graph import SceneObject
 
@@ -35,6 +37,8 @@ BEFORE_HAND: Final = 3.0
 DECIDES: Final = 0.08
 #: So much before the hand arrives it is over the block, and hides it less [s].
 OVER: Final = 0.45
+#: A finger that is this much nearer to the other one than a side of the block has met none [m].
+INSIDE: Final = 0.002
 #: For so long nothing is seen before that is given up, by the clock of the joint states [s].
 GIVES_UP: Final = 5.0
 
@@ -121,14 +125,18 @@ class LastLook:
 
     def __init__(self, sightings: Sightings, plan_id: str) -> None:
         self._sightings, self._plan_id, self._closing = sightings, plan_id, -1
+        # On which block fingers closed and met nothing, and when [s].
+        self._missed, self._missed_at = -1, 0.0
 
     def allows(self, move: int, state: ArmState, stands: float = 0.0) -> bool:
-        """Whether the block of a move was seen recently enough.
+        """Whether the block of a move was seen recently enough, and since fingers missed it.
 
         Args:
             stands: for how long the hand has stood at the block [s].
         """
         age = self._sightings.age(self._plan_id, move, state.stamp)
+        if move == self._missed and state.stamp - age <= self._missed_at:
+            return False
         if self._sightings.is_hidden(self._plan_id, move, state.stamp - age):
             return age <= BEFORE_HAND
         return age <= (OLDEST if stands >= WAITS else RECENT)
@@ -152,11 +160,26 @@ class LastLook:
         if grasp is None or time < grasp.start - DECIDES:
             return False
         if grasp.phase.move == self._closing:
-            return time < grasp.end - follower.LEAD and self._sightings.is_doubtful(self._plan_id)
+            if time < grasp.end - follower.LEAD and self._sightings.is_doubtful(self._plan_id):
+                return True
+            return self._meets_nothing(grasp, state)
         allowed = self.allows(grasp.phase.move, state)
         if allowed and time >= grasp.start:
             self.close(grasp.phase.move)
         return not allowed
+
+    def _meets_nothing(self, grasp: Interval, state: ArmState) -> bool:
+        """Whether closing fingers are further than a block lets them, for the first time on it.
+
+        A block that is seen all the same was measured too wide: then the lift tells.
+        """
+        phase = grasp.phase
+        if phase.move == self._missed or phase.grasp is None:
+            return False
+        if float(np.mean(state.positions.fingers)) > phase.grasp.width / 2 - INSIDE:
+            return False
+        self._missed, self._missed_at = phase.move, state.stamp
+        return True
 
 
 def grasp_ahead(trajectory: Trajectory, time: float) -> Interval | None:

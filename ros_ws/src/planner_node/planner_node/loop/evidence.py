@@ -35,8 +35,10 @@ MIN_VISIBLE: Final = 0.3
 STILL: Final = 0.004
 #: What is seen this near to the middle of a place, or of a block, from above, is over it [m].
 OVER: Final = 0.036
-#: A place that is hidden further may hide a block.
+#: A place that is hidden further may hide a block, ...
 MAX_HIDDEN: Final = 0.02
+#: ... though less than half of one up to this: a block is a tenth of what is over a place.
+HALF_HIDDEN: Final = 0.05
 
 
 class Kind(Enum):
@@ -123,8 +125,8 @@ class Evidence:
     @property
     def doubts(self) -> bool:
         """Whether anything in the newest frame speaks against the plan, though not for certain."""
-        return any(self._suspicions[name].finding.frames < FOREIGN_FRAMES
-                   for name in self._fresh if name in self._suspicions)  # fmt: skip
+        found = [self._suspicions[name].finding for name in self._fresh if name in self._suspicions]
+        return any(item.kind is not Kind.FOREIGN or item.frames < FOREIGN_FRAMES for item in found)
 
     def is_in_place(self, name: str) -> bool:
         """Whether a block is seen in the newest frame where it is to rest."""
@@ -189,16 +191,22 @@ class Evidence:
             return  # it stands, and is measured badly
         if item is None or lies:
             # What lies may be a part of the arm that looks like it: where it was to be tells.
-            if all(_is_seen(rest, graph.places) for rest in options):
+            if all(_is_seen(rest, graph.places, HALF_HIDDEN) for rest in options):
                 # Something else in its place may be it, by another name. What the hand is to take
                 # it may have taken, and the report of that be on its way; by the next frame of a
                 # machine that has a lot to do it has come. Meanwhile no fingers close.
                 doubt = any(_is_at(other, rest) for other in graph.objects for rest in options)
+                doubt |= not all(_is_seen(rest, graph.places) for rest in options)
                 held = name == about_to_rise
                 kind, where = Kind.UNSEEN, None
                 if item is not None:
                     kind, where = Kind.ELSEWHERE, item.position_world
                 self._suspect(Finding(name, kind, options[-1], where, 1 + doubt + held), steps)
+            elif item is not None and item.confidence >= PLAINLY:
+                # It may be what hides where it was to be.
+                where = item.position_world
+                finding = Finding(name, Kind.ELSEWHERE, options[-1], where, FOREIGN_FRAMES)
+                self._suspect(finding, steps)
             return
         if item.confidence < MIN_VISIBLE:
             return
@@ -275,18 +283,22 @@ def _is_on_something(item: SceneObject, graph: SceneGraph) -> bool:
     return any(abs(low - top) <= LIFTED for top in tops)
 
 
-def _is_seen(rest: Rest, places: Iterable[Place]) -> bool:
-    """Whether nothing hides a block that rests there."""
+def _is_seen(rest: Rest, places: Iterable[Place], most: float = MAX_HIDDEN) -> bool:
+    """Whether nothing hides a block that rests there.
+
+    Args:
+        most: how much of what is over its place may be hidden.
+    """
     top = rest.position_world[2] + 0.5 * rest.height
-    return _is_clear(rest, places) or any(
+    return _is_clear(rest, places, most) or any(
         place.index == rest.stack and top <= place.position_world[2] + place.seen_to
         for place in places
     )
 
 
-def _is_clear(rest: Rest, places: Iterable[Place]) -> bool:
+def _is_clear(rest: Rest, places: Iterable[Place], most: float) -> bool:
     """Whether nothing is over the place of a block: not the hand either."""
-    return any(place.index == rest.stack and place.hidden <= MAX_HIDDEN for place in places)
+    return any(place.index == rest.stack and place.hidden <= most for place in places)
 
 
 def _is_lifted(item: SceneObject, rest: Rest) -> bool:
