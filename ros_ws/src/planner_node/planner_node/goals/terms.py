@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from scene_graph import base_name
+from scene_graph import Phrase, base_name
 
 from .language import BOTH, NUMBERS, PLACE_NOUNS, SIDES, meant
 
@@ -66,6 +66,23 @@ class Kind(enum.Enum):
 
 
 @dataclass(frozen=True)
+class Described:
+    """What is true now of the one that is meant.
+
+    Attributes:
+        how: ``related`` (by a phrase to the others), ``top`` or ``bottom`` (of the one other, or of
+            the only tower); of a place: ``tallest``, ``shortest``, ``empty``, ``other``, ``with``
+            (the others in it).
+        place: it is a place.
+    """
+
+    how: str
+    place: bool = False
+    phrase: Phrase | None = None
+    others: tuple[Term, ...] = ()
+
+
+@dataclass(frozen=True)
 class Term:
     """A name and which of the objects that fit it are meant.
 
@@ -78,6 +95,7 @@ class Term:
         among: of COUNT, those that are counted; none: all that fit.
         exact: of EVERY, how many there have to be; None: it is not said.
         bare: it is a number or "all" without a name: "two boxes in stack0, one in stack1".
+        described: it is known by how the blocks stand now.
     """
 
     words: Words
@@ -91,10 +109,13 @@ class Term:
     among: tuple[Words, ...] = ()
     exact: int | None = None
     bare: bool = False
+    described: Described | None = None
 
     @property
     def is_place(self) -> bool:
         """Whether it is a place, or every one."""
+        if self.described is not None:
+            return self.described.place
         return self.words.is_place or self.is_every_place
 
     @property

@@ -1,0 +1,502 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From what sentences say one behind the other to relations: who "it", "both" and "there" are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+from scene_graph import ABOVE, BESIDE, LEFT, PREDICATES, UP, Phrase
+
+from ...errors import InvalidGoalError
+from ..objections import check_places, unclear, untold
+from ..parsed import ParsedRelation, in_one_place, none_but
+from ..terms import Described, Kind, Term, Words, is_any_place
+from .meaning import Again, Change, Changed, Clear, Item, Link, Names, Relate, Row, Take
+from .nominal import INSIDE, UPON
+
+_BESIDE = Phrase(PREDICATES[BESIDE])
+Said = ParsedRelation | Changed
+
+
+class Discourse:
+    """What was said so far.
+
+    Attributes:
+        relations: what it means.
+        subjects, object, link: of the last relation.
+    """
+
+    def __init__(self) -> None:
+        self.relations: list[Said] = []
+        self.subjects: list[Term] = []
+        self.object: Term | None = None
+        self.link: tuple[Phrase, bool, Words] | None = None
+        self._named: dict[str, Term] = {}
+        self._kinds: list[Term] = []
+        self._taken: list[Term] = []
+        self._off: Link | None = None
+        #: Whether the last clause was denied by its verb.
+        self._denied = False
+
+    def read(self, items: Iterable[Item]) -> tuple[Said, ...]:
+        """The relations of all items.
+
+        Raises:
+            InvalidGoalError: it is not clear who is meant, or it cannot be said of them.
+        """
+        for item in items:
+            if isinstance(item, Relate):
+                self._relate(item)
+            elif isinstance(item, Clear):
+                self._clear(item)
+            elif isinstance(item, Row):
+                self._row(item)
+            elif isinstance(item, Take):
+                self._take(item)
+            elif isinstance(item, Again):
+                self._again(item)
+            else:
+                self._change(item)
+        self._put_down()
+        return tuple(dict.fromkeys(self.relations))
+
+    # Who is meant
+
+    def _all_named(self, term: Term) -> list[Term]:
+        number = term.exact or (2 if not term.bare else max(2, len(self._named)))
+        if len(self._named) != number:
+            raise unclear(term)
+        return list(self._named.values())
+
+    def _is_it(self, term: Term) -> bool:
+        return term.words.text == "it"
+
+    def _meant(self, term: Term, phrase: Phrase | None, carried: bool = False) -> Term:
+        """A name itself; for "it" the one that it can only stand for."""
+        if not self._is_it(term):
+            return term
+        if phrase is not None and phrase.needs_place and self.object and self.object.is_place:
+            return self.object
+        subject = self.subjects[0] if len(self.subjects) == 1 else None
+        found: Term | None = None
+        if self.object is None or self.object.is_place:
+            found = subject
+        elif phrase is None and self.link is not None and self.link[1]:
+            found = subject  # "red not on blue, put it on green"
+        elif phrase is not None and (carried or self._opposite(phrase)):
+            found = self.object
+        elif phrase == UPON and self.link is not None:
+            # On what already carries a block nothing else can be put.
+            before, denied, _ = self.link
+            found = subject if before == phrase and not denied else None
+        if found is None or found.kind is not Kind.THE:
+            raise unclear(term)
+        return found
+
+    def _opposite(self, phrase: Phrase) -> bool:
+        before = self.link[0] if self.link is not None else phrase
+        return before.predicate == phrase.predicate and before.inverse != phrase.inverse
+
+    def _who(self, names: Names, phrase: Phrase | None = None, carried: bool = False) -> list[Term]:
+        """All that are meant by names."""
+        found: list[Term] = []
+        for term in names.terms:
+            if term.words.text == "they":
+                found += self._all_named(term)
+            elif term.bare and term.kind is Kind.EVERY and self._named:
+                number = len(self._named)
+                if number < 2:
+                    raise unclear(term)
+                found += list(self._named.values())
+            else:
+                found.append(self._meant(term, phrase, carried))
+        return found
+
+    # Items
+
+    def _relate(self, item: Relate) -> None:
+        if item.bare and self._denied and item.subject is not None:
+            raise unclear(item.subject.terms[0])  # is it denied as well?
+        subjects = self._subjects(item)
+        carried = item.subject is None
+        denied = item.denied
+        if item.subject is not None and item.subject.denied:
+            denied = not denied
+        open_links = [link for link in item.links if not link.denied]
+        if denied and len(item.links) > 1 and (
+            len(open_links) < len(item.links)
+            or any(link.how != "or" for link in item.links[:-1])
+        ):
+            # Not on blue and not left of green, or not both?
+            if not (len(item.links) == 2 and item.links[1].chained):
+                raise _unclear_words(item.links[1].words)
+        if not denied and any(link.how == "or" for link in item.links) and not all(
+            link.denied for link in item.links
+        ):
+            first_denied = item.links[0].denied
+            if not first_denied:
+                raise _unclear_words(item.links[0].words)
+            item = replace(
+                item, links=tuple(replace(link, denied=True) for link in item.links)
+            )
+        if len(subjects) > 1 and item.subject is not None and item.subject.either and not denied:
+            raise unclear(subjects[0])
+        self._check_chain(subjects, item.links)
+        if len(item.links) > 1 and denied and item.links[1].chained:
+            # "red must not be on blue in stack 1"
+            raise _unclear_words(item.links[1].words)
+        for link in item.links:
+            if link.chained:
+                subjects = [self.object] if self.object else subjects
+            self._link(subjects, link, denied != link.denied, item, carried)
+            carried = False
+        if item.about and item.links[-1].names is not None:
+            names = self._who(item.links[-1].names, item.links[-1].phrase)
+            if not names[-1].is_place:
+                self.subjects, self.object = names[-1:], None
+        self._denied = item.denied and not item.about
+
+    def _check_chain(self, subjects: Sequence[Term], links: Sequence[Link]) -> None:
+        for link, other in pairwise(links):
+            if not other.chained:
+                continue
+            same = link.phrase == other.phrase and link.phrase is not None
+            onto = link.phrase == UPON
+            names = link.names
+            if (
+                names is None
+                or link.denied
+                or len(names.terms) > 1
+                or names.terms[0].kind is not Kind.THE
+                or link.phrase is None
+                or not (onto or (same and link.phrase.predicate.name in (UP, ABOVE, LEFT)))
+                or (onto and other.denied)
+            ):
+                raise _unclear_words(other.words)
+            if any(term.kind is Kind.COUNT and term.bare for term in subjects):
+                raise unclear(subjects[0])
+
+    def _subjects(self, item: Relate) -> list[Term]:
+        """Who it is said of."""
+        if item.subject is None:
+            if self._taken:
+                return self._put()
+            if not self.subjects:
+                words = item.links[0].words
+                raise InvalidGoalError("there is no block before this", words.offset, words.text)
+            return list(self.subjects)
+        terms = item.subject.terms
+        if self._taken and len(terms) == 1:
+            if self._is_it(terms[0]) and len(self._taken) == 1:
+                return self._put()
+            if terms[0].words.text == "they" and len(self._taken) > 1:
+                return self._put()
+        if self._taken:
+            self._put_down()
+        return self._who(item.subject)
+
+    def _link(
+        self, subjects: list[Term], link: Link, denied: bool, item: Relate, carried: bool
+    ) -> None:
+        how = link.how if link.how != "or" else ""
+        written = link.words
+        if how in ("top", "bottom"):
+            self._edge(subjects, link, denied)
+            return
+        if how == "alone":
+            self._alone(subjects, item, denied, link)
+            return
+        if how in ("same", "different"):
+            others = self._who(link.names) if link.names else []
+            blocks = [*subjects, *others]
+            if not others and len(blocks) == 1 and blocks[0].kind is Kind.THE and self.object:
+                blocks.append(self.object)  # "red under blue, in the same stack"
+            found = in_one_place(blocks, how == "same", denied)
+            if found is None:
+                raise _unclear_words(written)
+            self.relations += found
+            self._name(*blocks)
+            self.subjects, self.object = blocks[:1], None
+            return
+        if how == "each other":
+            if len(subjects) == 1 and subjects[0].exact == 2:
+                subjects = [subjects[0], subjects[0]]
+            if len(subjects) != 2:
+                raise unclear(subjects[0])
+            self._add(subjects[:1], _BESIDE, denied, written, subjects[1])
+            self._name(*subjects)
+            self.subjects, self.object = subjects, None
+            return
+        if how == "there":
+            if self.object is None or not self.object.is_place:
+                raise _unclear_words(written)
+            phrase = INSIDE
+            if any(term == self.object for term in subjects):
+                raise _unclear_words(written)
+            objects = [self.object]
+        elif how == "where":
+            assert link.names is not None
+            (other,) = link.names.terms
+            below = Term(other.words, described=Described("below", others=(other,)))
+            phrase, objects = UPON, [below]
+        elif how == "elsewhere":
+            if denied or len(subjects) != 1 or subjects[0].kind is not Kind.THE:
+                raise _unclear_words(written)
+            if self.object is not None and self.object.is_place and self.subjects != subjects:
+                objects = [self.object]  # "red in stack1, blue elsewhere"
+            else:
+                own = Described("with", place=True, others=(subjects[0],))
+                objects = [Term(written, described=own)]
+            phrase, denied = INSIDE, True
+        else:
+            if link.phrase is None or link.names is None:
+                raise _unclear_words(written)
+            phrase = link.phrase
+            objects = self._objects(link, denied, subjects, carried)
+        for one in objects:
+            if one.described and one.described.how == "other" and not one.described.others:
+                one = replace(one, described=replace(one.described, others=tuple(subjects)))
+            self._add(subjects, phrase, denied, written, one)
+            if link.adjacent:
+                if denied:
+                    raise _unclear_words(written)
+                self._add(subjects, _BESIDE, False, written, one)
+        self.subjects, self.object = list(subjects), objects[-1]
+        self.link = (phrase, denied, written)
+
+    def _objects(
+        self, link: Link, denied: bool, subjects: Sequence[Term], carried: bool
+    ) -> list[Term]:
+        assert link.names is not None and link.phrase is not None
+        names = link.names
+        all_none = all(term.kind is Kind.NO for term in subjects)
+        if names.denied or (names.either and not (denied or all_none)):
+            raise unclear(names.terms[0])
+        if any(term.kind is Kind.NO for term in names.terms):
+            raise unclear(names.terms[0])
+        objects = self._who(names, link.phrase, carried)
+        if denied and len(objects) > 1 and not names.either and not link.denied:
+            raise unclear(objects[1])  # not left of red and blue: of neither, or not of both?
+        positive = not (denied or all_none)
+        if positive and len(objects) > 1 and link.phrase == UPON:
+            raise unclear(objects[1])  # nothing stands directly on two
+        if positive and len(objects) > 1 and all(term.is_place for term in objects):
+            some = all(term.kind is Kind.COUNT for term in subjects)
+            if not some:
+                raise unclear(objects[1])
+        return objects
+
+    def _edge(self, subjects: Sequence[Term], link: Link, denied: bool) -> None:
+        place = self.object
+        if link.names is not None:
+            (place,) = self._who(link.names, INSIDE)
+        if place is None or not place.is_place or place.is_every_place or denied:
+            raise _unclear_words(link.words)
+        if len(subjects) != 1 or subjects[0].kind is not Kind.THE or subjects[0].is_place:
+            raise _unclear_words(link.words)
+        upon = link.words.text.startswith(("on", "up", "right on"))
+        spoken = self.subjects[0] if len(self.subjects) == 1 else None
+        if link.names is None and upon and spoken is not None and spoken.kind is Kind.THE:
+            if spoken.words.text != subjects[0].words.text:
+                raise unclear(subjects[0])  # "red in stack1, blue on top": of it, or of the stack?
+        bottom = link.how == "bottom"
+        phrase = UPON if bottom else INSIDE
+        self._add(subjects, phrase, False, link.words, place)
+        if not bottom:
+            self._nothing_on(subjects[0])
+        self.subjects, self.object = list(subjects), place
+        self.link = (phrase, False, link.words)
+
+    def _alone(self, subjects: Sequence[Term], item: Relate, denied: bool, link: Link) -> None:
+        places = [
+            term
+            for other in item.links
+            if other.names is not None and other.phrase is not None
+            for term in other.names.terms
+            if term.is_place
+        ]
+        if denied or any(term.kind is not Kind.THE for term in subjects):
+            raise _unclear_words(link.words)
+        if places:
+            found = none_but(subjects, INSIDE, False, places[0])
+            assert found is not None
+            self.relations.append(found)
+            return
+        if len(subjects) > 1:
+            raise _unclear_words(link.words)
+        others = Term(Words("block", subjects[0].words.offset), Kind.EVERY, but=tuple(subjects))
+        above = Phrase(PREDICATES[ABOVE])
+        self.relations.append(ParsedRelation(others, above, subjects[0], negated=True))
+        self.relations.append(ParsedRelation(subjects[0], above, others, negated=True))
+        self._name(*subjects)
+        self.subjects, self.object = list(subjects), None
+
+    def _nothing_on(self, term: Term) -> None:
+        nothing = Term(Words("block", term.words.offset), Kind.NO, 0, 0)
+        self.relations.append(ParsedRelation(nothing, UPON, term))
+
+    def _clear(self, item: Clear) -> None:
+        if self._taken and not (item.names and self._is_it(item.names.terms[0])):
+            self._put_down()
+        terms = list(self.subjects)
+        if item.names is not None:
+            if self._taken and len(item.names.terms) == 1 and self._is_it(item.names.terms[0]):
+                terms = list(self._taken)
+            else:
+                terms = self._who(item.names)
+        if not terms:
+            raise InvalidGoalError("there is no block before this")
+        for term in terms:
+            if item.denied:
+                if term.kind not in (Kind.THE, Kind.EVERY, Kind.NO):
+                    raise unclear(term)
+                if term.kind is Kind.NO:
+                    term = replace(term, kind=Kind.EVERY)
+                some = Term(Words("block", term.words.offset), Kind.COUNT)
+                phrase = INSIDE if term.is_place else UPON
+                self.relations.append(ParsedRelation(some, phrase, term))
+            elif term.kind is Kind.NO and term.words.text == "stack":
+                some = Term(Words("block", term.words.offset), Kind.COUNT)
+                every = replace(term, kind=Kind.EVERY)
+                self.relations.append(ParsedRelation(some, INSIDE, every))
+            elif term.kind in (Kind.THE, Kind.EVERY):
+                self._nothing_on(term)
+            else:
+                raise unclear(term)
+            self._name(term)
+        self.subjects, self.object = terms, None
+        self._denied = False
+
+    def _row(self, item: Row) -> None:
+        self._put_down()
+        phrase = Phrase(PREDICATES[item.predicate], inverse=False)
+        blocks = [self._meant(term, None) for term in item.names]
+        written = Words(phrase.predicate.words, blocks[0].words.offset)
+        if item.place is not None:
+            self._add(blocks[:1], UPON, False, written, item.place)
+        for below, above in pairwise(blocks):
+            if item.predicate == LEFT:
+                self._add([below], phrase, False, written, above)
+            else:
+                self._add([above], phrase, False, written, below)
+        self.subjects, self.object, self._denied = blocks[-1:], None, False
+        if item.place is not None:
+            self.object = item.place
+
+    def _take(self, item: Take) -> None:
+        if self._off is not None:
+            self._put_down()
+        self._taken += self._who(item.names)
+        self._off = item.off
+        self._denied = False
+        if item.off is not None:
+            self.subjects, self.object = list(self._taken), None
+
+    def _put(self) -> list[Term]:
+        taken, self._taken, self._off = self._taken, [], None
+        return taken
+
+    def _put_down(self) -> None:
+        """What was taken and not put somewhere else is only taken away."""
+        if not self._taken:
+            return
+        off, taken = self._off, self._put()
+        if off is None or off.names is None or off.phrase is None:
+            raise untold(taken[0])
+        for one in self._who(off.names):
+            self._add(taken, off.phrase, True, off.words, one)
+        self.subjects, self.object = taken, None
+
+    def _again(self, item: Again) -> None:
+        if self.link is None or self.object is None or self.link[1] != item.denied:
+            raise unclear(item.names.terms[0])
+        names = self._who(item.names)
+        self._add(names, *self.link, self.object)
+
+    def _change(self, item: Change) -> None:
+        self._put_down()
+        terms = tuple(self._who(item.names)) if item.names is not None else ()
+        if item.kind == "swap" and len(terms) == 1 and terms[0].exact != 2:
+            raise unclear(terms[0])
+        self.relations.append(Changed(item.kind, item.words, terms, item.steps))
+        self._name(*terms)
+        self._denied = False
+
+    # Relations
+
+    def _name(self, *terms: Term) -> None:
+        for term in terms:
+            if term.kind is Kind.THE and not term.is_place and not term.described:
+                self._named.setdefault(term.words.text, term)
+
+    def _add(
+        self, subjects: Sequence[Term], phrase: Phrase, denied: bool, written: Words, object_: Term
+    ) -> None:
+        bounded = all(term.kind is Kind.COUNT and not term.least for term in subjects)
+        none = all(term.kind is Kind.NO for term in subjects)
+        if is_any_place(object_) and (bounded or none):
+            object_ = replace(object_, kind=Kind.EVERY)  # "at most two blocks in any stack"
+        if is_any_place(object_) and not (bounded or none):
+            raise unclear(object_)
+        if denied and any(term.kind in (Kind.NO, Kind.COUNT) for term in subjects):
+            raise unclear(subjects[0])
+        if len(subjects) > 1 and subjects[-1].kind is Kind.NO and subjects[-1].others:
+            subjects = [replace(subject, only=True) for subject in subjects[:-1]]
+        if only := [subject for subject in subjects if subject.only]:
+            self._only(subjects, phrase, denied, object_, only[0])
+            if all(term.kind is Kind.EVERY for term in only):
+                return
+            subjects = [replace(subject, only=False) for subject in subjects]
+        for subject in subjects:
+            subject = self._among_others(subject)
+            if subject.kind in (Kind.EVERY, Kind.COUNT) and not subject.others:
+                self._kinds.append(subject)
+            for term in (subject, object_):
+                if self._is_it(term):
+                    raise unclear(term)
+                self._name(term)
+            check_places(subject, phrase, object_, written.text)
+            if subject.is_place and phrase == UPON and not phrase.inverse:
+                raise unclear(subject)
+            meaning = phrase
+            together = subject.several or len(subjects) > 1
+            if together and object_.is_place and phrase == UPON and not denied:
+                # Several blocks on a place cannot all stand directly on it.
+                meaning = phrase._replace(predicate=PREDICATES[ABOVE])
+            self.relations.append(ParsedRelation(subject, meaning, object_, denied))
+
+    def _among_others(self, subject: Term) -> Term:
+        """ "the rest" as all but those that were named."""
+        if not subject.others:
+            return subject
+        spoken = [*self._named.values(), *self._kinds]
+        if not spoken or any(term.kind is Kind.COUNT for term in spoken):
+            raise unclear(subject)
+        if subject.kind is Kind.NO and set(self._named) != {
+            term.words.text for term in self.subjects
+        }:
+            raise unclear(subject)  # who else was named may be meant as well
+        return replace(subject, others=False, but=tuple(spoken))
+
+    def _only(
+        self, subjects: Sequence[Term], phrase: Phrase, denied: bool, object_: Term, one: Term
+    ) -> None:
+        if all(term.kind is Kind.EVERY for term in subjects) and object_.is_place and not denied:
+            # "only boxes in stack 1" does not say that all are.
+            others = Term(Words("block", one.words.offset), Kind.EVERY, but=tuple(subjects))
+            others = replace(others, but=tuple(replace(term, only=False) for term in subjects))
+            inside = Phrase(PREDICATES[ABOVE])
+            self.relations.append(ParsedRelation(others, inside, object_, negated=True))
+            return
+        found = none_but(subjects, phrase, denied, object_)
+        if found is None:
+            raise unclear(one)
+        self.relations.append(found)
+
+
+def _unclear_words(words: Words) -> InvalidGoalError:
+    return InvalidGoalError(
+        "it is not clear what this is said of; write every relation out", words.offset, words.text
+    )

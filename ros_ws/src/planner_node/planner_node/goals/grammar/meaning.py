@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the parts of a sentence mean, before it is known who "it" is and how the blocks stand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from scene_graph import Phrase
+
+from ..terms import Term, Words
+
+
+@dataclass(frozen=True)
+class Names:
+    """Who is spoken of.
+
+    Attributes:
+        either: they are joined by "or".
+        denied: it is said of none of them: "neither red nor blue".
+    """
+
+    terms: tuple[Term, ...]
+    either: bool = False
+    denied: bool = False
+
+
+@dataclass(frozen=True)
+class Link:
+    """A relation to something, without its subject.
+
+    Attributes:
+        how: what it is where it is no phrase: ``top``, ``bottom``, ``middle`` (of ``names``, or of
+            what was spoken of), ``there``, ``alone``, ``each other``, ``same``, ``different`` (as
+            ``names``, or among themselves), ``where`` (another one is now), ``elsewhere``.
+        adjacent: the places are neighbours too: "directly left of".
+        chained: its subject is the object of the link before.
+    """
+
+    words: Words
+    phrase: Phrase | None = None
+    names: Names | None = None
+    denied: bool = False
+    how: str = ""
+    adjacent: bool = False
+    chained: bool = False
+
+
+@dataclass(frozen=True)
+class Relate:
+    """Some have relations.
+
+    Attributes:
+        subject: None: who was spoken of before.
+        bare: it has no verb of its own, so that what was denied before may be meant to go on.
+        about: the object is who is spoken of next: "red has blue on it".
+        taken: the subject was only taken so far: "take red".
+    """
+
+    subject: Names | None
+    links: tuple[Link, ...]
+    denied: bool = False
+    bare: bool = False
+    about: bool = False
+
+
+@dataclass(frozen=True)
+class Clear:
+    """Nothing is on them, or in them; ``denied``: something is."""
+
+    names: Names | None
+    denied: bool = False
+
+
+@dataclass(frozen=True)
+class Row:
+    """Names in their order: a tower from the bottom (``up``), a row from the left (``left``)."""
+
+    predicate: str
+    names: tuple[Term, ...]
+    place: Term | None = None
+
+
+@dataclass(frozen=True)
+class Take:
+    """They are taken, from something where that is said; the next relation is of "it"."""
+
+    names: Names
+    off: Link | None = None
+
+
+@dataclass(frozen=True)
+class Again:
+    """What was said last is said of others too; ``denied``: it was denied, and is of them."""
+
+    names: Names
+    denied: bool = False
+
+
+@dataclass(frozen=True)
+class Change:
+    """What is told by how the blocks stand now.
+
+    Attributes:
+        kind: ``swap``, ``keep``, ``turn``, ``same``, ``shift``.
+        names: of what; None: of everything.
+        steps: of a shift, to the right.
+    """
+
+    kind: str
+    words: Words
+    names: Names | None = None
+    steps: int = 0
+
+
+@dataclass(frozen=True)
+class Changed:
+    """A change whose names are known.
+
+    Attributes:
+        terms: of whom; empty for everything.
+    """
+
+    kind: str
+    words: Words
+    terms: tuple[Term, ...] = ()
+    steps: int = 0
+
+
+Item = Relate | Clear | Row | Take | Again | Change

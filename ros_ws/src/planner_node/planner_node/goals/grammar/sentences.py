@@ -1,0 +1,318 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rules for whole texts: wishes around clauses, several of them, corrections, what says nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from .lattice import Word
+from .meaning import Again, Change, Clear, Item, Names, Relate, Row
+from .nominal import rule, words_of
+
+# Who wishes
+
+
+@rule("WHO", "w:I", "w:PERSON")
+def _who(w: Word | str) -> str:
+    return "who"
+
+
+@rule("PERSON", "THE? UNKNOWN", "THE? UNKNOWN UNKNOWN", "A UNKNOWN", "EVERY UNKNOWN", cost=1.0)
+def _person() -> str:
+    return "who"
+
+
+# What stands in front of a wish
+
+
+@rule("FRAME", "WHO WANT SEEING*", "WHO DO WANT SEEING*", "WHO MUST WANT SEEING*", "WHO MUST SEEING+", "WHO MUST MAKESURE SOTHAT?")
+@rule("FRAME", "MODAL YOU", "MODAL YOU MIND", "MODAL YOU MAKESURE SOTHAT?", "MODAL YOU SEEING+", "MODAL YOU MIND MAKESURE SOTHAT?")
+@rule("FRAME", "MODAL WHO SEEING*", "YOU MUST", "YOU MAY", "YOU 'to'", "YOU MUST MAKESURE SOTHAT?")
+@rule("FRAME", "MAKESURE SOTHAT?", "MAKESURE 'to'", "PUT MAKESURE SOTHAT")
+@rule("FRAME", "'it' BE GOOD SEEING*", "'it' MUST BE GOOD SEEING*", "GOOD SOTHAT", "WHO BE GOOD SEEING*", "'it' MUST BE GOOD IFNICE YOU?", "'it' MUST BE GOOD IFNICE YOU MAY")
+@rule("FRAME", "MODAL 'it' BE 'possible' SEEING*", "BE 'it' 'possible' SEEING*", "DO YOU THINK YOU MODAL", "DO YOU THINK 'it' MODAL BE 'possible' SEEING*")
+@rule("FRAME", "THE? GOAL BE SEEING*", "THE? GOAL COLON", "THE? GOAL MUST SATISFY COLON?", "THE? GOAL GIVENS COLON", "THE? GOAL BE COLON", "THE? GOAL GIVENS BE SEEING*", "THE? GOAL WHO WANT BE COLON?")
+@rule("FRAME", "WHO LOVEIT IFNICE YOU?", "WHO LOVEIT IFNICE YOU MAY", "WHO LOVEIT SEEING+", "WHO LOVEIT 'it' IFNICE YOU?")
+@rule("FRAME", "WHO THINK SOTHAT?", "WHO THINK COMMA", "WHO THINK WHO MAY", "WHO THINK WHO WANT SEEING*", "WHO THINK WHO MAY SEEING+", "LETUS", "LETUS SEEING+", "LETUS MAKESURE SOTHAT?", "'how' 'about'", "'how' 'about' PUTTINGNOT")
+@rule("FRAME", "WHATIWANT BE? COLON?", "WHATIWANT BE SEEING+", "WHATIWANT GIVENS? COLON", "WHO BE 'wondering' IFNICE YOU MAY", "WHO PAST 'wondering' IFNICE YOU MODAL", "WHO THINK IFNICE YOU MODAL")
+@rule("FRAME", "MODAL YOU SHOWTHAT", "THE? STEP k:NUMBER COLON?", "k:NUMBER MARK", "STEP k:NUMBER COMMA", "ORDINALLY COMMA?", "PUT 'it' SOTHAT", "'try' 'to'", "PUT THE? PLURALS SOTHAT")
+@rule("FRAME", "GIVENS COMMA?", "GIVENS COLON", "WHO WANT A? HEADINGNOUN 'where'", "WHO WANT A? HEADINGNOUN WHEREIN", "PUT A? HEADINGNOUN WHEREIN", "PUT A? HEADINGNOUN COLON", "A? HEADINGNOUN COLON", "PUT A? HEADINGNOUN 'with'", "WHO WANT A? HEADINGNOUN 'with'", "PUT NUMBER HEADINGNOUNS COLON", "WHO WANT A? HEADINGNOUN COLON")
+def _frame(k: Word | None = None) -> bool:
+    return False
+
+
+@rule("FRAME", "WHO DO NOT WANT SEEING*", "WHO MUST NOT WANT SEEING*", "WHO NOT WANT SEEING*", "AVOID SOTHAT", "MAKESURE NOT 'to'?", "MAKESURE 'to' NOT",
+      "WHO MUST WANT YOU 'to' NOT", "WHO WANT YOU NOT 'to'", "WHO WANT YOU 'to' NOT", "'it' BE NOT PERMITTED SEEING*", "'it' MUST NOT BE SEEING+", "DO NOT LETTING", "YOU MUST NOT", "YOU MAY NOT",
+      "NOT LETTING", "'it' BE GOOD SOTHAT NOT", "'it' BE GOOD NOT 'to'", "DO NOT PUT 'it' SOTHAT", "NEVERMAY", "NOTTIME MUST", "NOTTIME MAY")  # fmt: skip
+def _frame_denied() -> bool:
+    return True
+
+
+@rule("LETTING", "'let'", "'allow'", "'have'", "'permit'")
+def _letting() -> str:
+    return "let"
+
+
+@rule("NEVERMAY", "NOT MAY", "NOT MUST")
+def _never_may() -> str:
+    return "never"
+
+
+@rule("SEEING", "w:TOSEE", "w:SOTHAT", "w:IFNICE", "'for'", "'to'", "w:PUTTINGNOT", "YOU 'to'", "'for' YOU 'to'", "'it'", "'you'", "'of' 'you'")
+def _seeing(w: Word | None = None) -> str:
+    return "see"
+
+
+@rule("PUTTINGNOT", "'seeing'", "'having'", "'getting'")
+def _putting_not() -> str:
+    return "see"
+
+
+@rule("HEADINGNOUN", "ADJ? w:TOWER", "ADJ? w:GOAL", "ADJ? w:ROWNOUN")
+def _heading_noun(w: Word) -> Word:
+    return w
+
+
+@rule("HEADINGNOUNS", "ADJ? w:PLACENOUNS")
+def _heading_nouns(w: Word) -> Word:
+    return w
+
+
+@rule("WHEREIN", "'where'", "'in' WHICH", "'so' 'that'", "WHICH HAS", "SOTHAT")
+def _wherein() -> str:
+    return "where"
+
+
+@rule("GIVENS", "GIVENFOR THE? UNKNOWN+", "GIVENFOR DISCUSSED", "GIVENFOR THE? UNKNOWN? STEP", "GIVENFOR THE? FILLABLE* UNKNOWN* STEP NUMBER?", cost=0.8)
+def _givens() -> str:
+    return "given"
+
+
+@rule("FILLABLE", "'next'", "'last'", "'first'", "'final'")
+def _fillable() -> str:
+    return ""
+
+
+@rule("ORDINALLY", "w:ORDINAL", "w:FIRST")
+def _ordinally(w: Word) -> Word:
+    return w
+
+
+@rule("PLURALS", "w:NOUNS", "w:SHAPES")
+def _plurals(w: Word) -> Word:
+    return w
+
+
+@rule("FRAMED", "f:FRAME c:FRAMED")
+def _more_frames(f: bool, c: Item | tuple[Item, ...]) -> Item | tuple[Item, ...] | None:
+    return _under(f, c)
+
+
+def _under(denied: bool, item: Item) -> Item | None:
+    if not denied:
+        return item
+    if isinstance(item, Relate) and not item.denied and item.subject is not None:
+        subject = item.subject
+        if subject.denied or any(term.only for term in subject.terms):
+            return None
+        kinds = {term.kind.name for term in subject.terms}
+        if kinds == {"THE"}:
+            return replace(item, denied=True)
+        if len(subject.terms) > 1:
+            return None
+        (term,) = subject.terms
+        none = replace(term, kind=type(term.kind).NO, least=0, most=0, bare=False)
+        if term.kind.name == "COUNT" and (term.least, term.most) == (1, None):
+            return replace(item, subject=Names((none,)))
+        if term.kind.name == "COUNT" and term.most is None:
+            fewer = replace(term, least=0, most=term.least - 1)
+            return replace(item, subject=Names((fewer,)))
+        if term.kind.name == "EVERY" and item.subject is not None and term.words.text == "block":
+            return replace(item, subject=Names((none,)))
+        return None
+    if isinstance(item, Clear) and not item.denied:
+        return replace(item, denied=True)
+    return None
+
+
+@rule("FRAMED", "f:FRAME c:CLAUSE", "f:FRAME c:WISHED", "f:FRAME c:ROW")
+def _framed(f: bool, c: Item) -> Item | None:
+    return _under(f, c)
+
+
+@rule("FRAMED", "c:CLAUSE", "c:ROW", "c:CHANGE")
+def _clause(c: Item) -> Item:
+    return c
+
+
+@rule("FRAMED", "MODAL c:WISHED")
+def _question(c: Item) -> Item:
+    return c
+
+
+@rule("FRAMED", "c:FRAMED2 COMMA? SUFFIX")
+def _with_suffix(c: Item) -> Item:
+    return c
+
+
+@rule("FRAMED2", "f:FRAME c:CLAUSE", "f:FRAME c:WISHED", "c:CLAUSE", "c:WISHED", "f:FRAME c:ROW", "c:ROW", "IFNICE YOU? MAY? c:CLAUSE", "IFNICE YOU MODAL c:CLAUSE", "IFNICE c:WISHED")
+def _to_suffix(c: Item, f: bool = False) -> Item | None:
+    return _under(f, c)
+
+
+@rule("SUFFIX", "MUST BE GOOD", "'that' MUST BE GOOD", "'it' MUST BE GOOD", "BE WHATIWANT", "AND WHO MUST BE GOOD", "'that' BE WHATIWANT", "'it' BE", "AND WHO MUST BE UNKNOWN", "BE THE? GOAL", "'that' BE THE? GOAL", "WHO LOVEIT", "WHO MUST BE GOOD", "ANYORDER", "WHO WANT", "WHO THINK", "'that' MUST BE UNKNOWN", "BE MUST", "'if' 'it' BE GOOD", "'that' BE GOOD")
+def _suffix() -> str:
+    return ""
+
+
+# What says nothing
+
+
+@rule("IDLE", "FILLEDOUT", "OTHERS DONTCARE", "w:ANYORDER", "'i' DONTCARE OTHERS", "LETSBUILD", "SUFFIX", "KEEPING")
+def _idle(w: Word | None = None) -> str:
+    return "idle"
+
+
+@rule("FILLEDOUT", "GIVENS")
+def _filled() -> str:
+    return ""
+
+
+@rule("LETSBUILD", "LETUS PUT A? HEADINGNOUN", "PUT A? HEADINGNOUN", "WHO WANT A? HEADINGNOUN", "PUT NUMBER HEADINGNOUNS", "WHO WANT NUMBER HEADINGNOUNS")
+def _lets_build() -> str:
+    return ""
+
+
+@rule("OTHERS", "THE? OTHER NOUNS?", "EVERYTHING ELSE", "WHERE THE? OTHER NOUNS? BE", "EVERY? THE? OTHER NOUNS?")
+def _others() -> str:
+    return ""
+
+
+@rule("KEEPING", "KEEP OTHERS ASIS?", "OTHERS MUST? BE ASIS", "OTHERS ASIS", "KEEP OTHERS 'out'")
+def _keeping_others() -> str:
+    """The planner moves no more than it has to."""
+    return ""
+
+
+@rule("AGAINSAID", "'so' MUST n:LISTED", "AND n:LISTED LIKEWISE", "SAMEFOR n:LISTED", "n:LISTED LIKEWISE")
+def _again(n: Names) -> Again | None:
+    return None if n.either or n.denied else Again(n)
+
+
+@rule("AGAINSAID", "'nor' MUST n:LISTED", "'neither' MUST n:LISTED", "'nor' MAY n:LISTED", "'neither' MAY n:LISTED", "'nor' DO n:LISTED")
+def _again_denied(n: Names) -> Again | None:
+    return None if n.either or n.denied else Again(n, denied=True)
+
+
+# Changes of what is there now
+
+
+@rule("CHANGE", "w:SWAP n:LISTED", "w:SWAP n:LISTED 'around'", "n:LISTED MUST? w:SWAPPED", "n:LISTED BE w:SWAPPED", "w:SWAP m:TERM 'with' o:TERM", "w:SWAP m:TERM 'for' o:TERM", "PUT n:LISTED w:SWAPPED", "PUT m:TERM SWAPPEDWITH w:SWAPPED 'with' o:TERM", "m:TERM MUST? w:SWAPPED 'with' o:TERM")
+def _swap(w: Word, n: Names | None = None, m: object = None, o: object = None) -> Change | None:
+    names = n or Names((m, o))  # type: ignore[arg-type]
+    if names.either or names.denied:
+        return None
+    return Change("swap", words_of(w), names)
+
+
+@rule("CHANGE", "w:KEEP n:LISTED ASIS", "n:LISTED MUST? BE ASIS", "w:DONTTOUCH n:LISTED", "n:LISTED w:ASIS")
+def _keep(n: Names, w: Word | None = None) -> Change | None:
+    if n.either or n.denied or any(term.others for term in n.terms):
+        return None
+    return Change("keep", n.terms[0].words if w is None else words_of(w), n)
+
+
+@rule("CHANGE", "w:TURN n:LISTED UPSIDEDOWN", "'reverse' THE? ROWNOUN 'of' w:HEADINGWORD n:LISTED", "w:REVERSE n:LISTED", "w:REVERSE THE ROWNOUN 'of' THE? HEAD? 'in' n:LISTED", "w:REVERSE THE ROWNOUN OFOF n:LISTED")
+def _turn(n: Names, w: Word) -> Change | None:
+    if n.either or n.denied or len(n.terms) > 1:
+        return None
+    return Change("turn", words_of(w), n)
+
+
+@rule("CHANGE", "w:TURN THE w2:TOWER UPSIDEDOWN", "w:REVERSE THE w2:TOWER")
+def _turn_tower(w: Word, w2: Word) -> Change:
+    return Change("turn", words_of(w))
+
+
+@rule("CHANGE", "w:SAMENOW", "KEEP w:SAMENOW", "KEEP EVERYTHING w:ASIS", "PUT w:SAMENOW", "EVERYTHING MUST? BE w:ASIS")
+def _same(w: Word) -> Change:
+    return Change("same", words_of(w))
+
+
+@rule("CHANGE", "PUT n:LISTED k:STEPS w:TOSIDEWORD", "PUT n:LISTED w:TOSIDEWORD 'by' k:STEPS")
+def _shift(n: Names, k: int, w: Word) -> Change | None:
+    if n.either or n.denied:
+        return None
+    return Change("shift", words_of(w), n, k if w.text == "right" else -k)
+
+
+@rule("STEPS", "k:NUMBER PLACENOUN", "k:NUMBER PLACENOUNS", "k:NUMBER STEP", "w:A PLACENOUN")
+def _steps(k: Word | None = None, w: Word | None = None) -> int | None:
+    if w is not None and w.text not in ("a", "one"):
+        return None
+    return int(k.means) if k else 1
+
+
+@rule("TOSIDEWORD", "'to' THE w:SIDE", "w:SIDE", "'further' w:SIDE", "'over' 'to' THE w:SIDE")
+def _to_side_word(w: Word) -> Word | None:
+    return w if w.text in ("left", "right") else None
+
+
+# Several of them
+
+
+@rule("ITEM", "c:FRAMED", "c:AGAINSAID", "PREAMBLE COMMA? c:FRAMED")
+def _item(c: Item) -> tuple[Item, ...]:
+    return (c,)
+
+
+@rule("ITEM", "IDLE")
+def _idle_item() -> tuple[Item, ...]:
+    return ()
+
+
+@rule("PREAMBLE", "IDLE COMMA", cost=0.3)
+def _preamble() -> str:
+    return ""
+
+
+@rule("SEP", "COMMA", "AND", "COMMA AND", "BUT", "COMMA BUT", "STOP", "STOP AND", "STOP BUT", "STOP STOP", "BUT AND", "MARK MARK", "MARK COMMA", "COMMA COMMA", "AND COMMA", "AND SOTHAT", "COMMA SOTHAT", "COMMA 'with'", "'with'", "COMMA 'where'", "STOP AND COMMA")
+def _sep() -> str:
+    return ""
+
+
+#: An item, and how it is joined to what stands in front of it.
+Joined = tuple[str, tuple[Item, ...]]
+
+
+@rule("ITEMS", "i:ITEM", "i:ITEM STOP+")
+def _last(i: tuple[Item, ...]) -> tuple[Joined, ...]:
+    return (("", i),)
+
+
+@rule("ITEMS", "i:ITEM SEP r:ITEMS")
+@rule("ITEMS", "i:ITEM r:ITEMS", cost=1.5)
+def _more(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...]:
+    return (("", i), *r)
+
+
+@rule("ITEMS", "i:ITEM CORRECTED r:ITEMS", "i:ITEM MARK CORRECTED r:ITEMS", "i:ITEM COMMA? INSTEADOF r:ITEMS", cost=0.2)
+def _replaced(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...] | None:
+    """What follows stands for what it was in front of: an "it" in it would not be clear."""
+    first = r[0][1]
+    if len(first) != 1 or not isinstance(first[0], Relate | Clear | Row):
+        return None
+    if isinstance(first[0], Relate) and (first[0].subject is None or first[0].denied):
+        return None
+    return r
+
+
+@rule("ITEMS", "i:ITEM COMMA? OR r:ITEMS")
+def _or(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...]:
+    return (("", i), ("or", r[0][1]), *r[1:])
+
+
+@rule("TEXT", "START STOP* r:ITEMS", "START STOP* AND? r:ITEMS")
+def _text(r: tuple[Joined, ...]) -> tuple[Joined, ...]:
+    return r
+
