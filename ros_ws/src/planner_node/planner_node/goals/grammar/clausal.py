@@ -5,11 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Final
 
-from ..terms import Kind, Term
+from scene_graph import LEFT, PREDICATES, Phrase
+
+from ..terms import Kind, Term, Words
 from .lattice import Word
-from .meaning import Change, Clear, Item, Link, Names, Relate, Row, Take
+from .meaning import Item, Link, Names, Relate, Row, Take
 from .nominal import INSIDE, UPON, rule, term_of, words_of
 
 #: Behind "not", what need not be so.
@@ -23,11 +26,22 @@ class Verb:
     denied: bool = False
     may: bool = False
     past: bool = False
+    floats: bool = False
 
 
 @rule("VERBWORD", "w:BE", "w:MUST", "w:DO")
 def _verb_word(w: Word) -> tuple[str, str]:
     return "be", w.text
+
+
+@rule("VERBWORD", "w:FLOAT")
+def _float_word(w: Word) -> tuple[str, str]:
+    return "all", w.text
+
+
+@rule("VERBWORD", "w:PLACED")
+def _placed_word(w: Word) -> tuple[str, str]:
+    return "placed", w.text
 
 
 @rule("VERBWORD", "w:NOT")
@@ -45,146 +59,198 @@ def _past_word(w: Word) -> tuple[str, str]:
     return "past", w.text
 
 
-@rule("ANYVERB", "w:VERBWORD+")
+@rule("VERB", "w:VERBWORD+")
 def _verb(w: Sequence[tuple[str, str]]) -> Verb | None:
     kinds = [kind for kind, _ in w]
-    if kinds.count("not") > 1 or len(w) > 5:
+    if kinds.count("not") > 1 or len(w) > 6 or kinds == ["not"]:
         return None
-    for (kind, _), (_, text) in zip(w, w[1:]):
+    for (kind, _), (_, text) in pairwise(w):
         if kind == "not" and text in _NEED:
             return None
-    return Verb("not" in kinds, "may" in kinds, "past" in kinds)
+    if ("not", "have") in {(kind, after) for (kind, _), (_, after) in pairwise(w)}:
+        return None  # "should not have put"
+    return Verb("not" in kinds, "may" in kinds, "past" in kinds, set(kinds) == {"all"})
 
 
-@rule("VERB", "v:ANYVERB")
-def _asked_for(v: Verb) -> Verb | None:
-    """What is allowed or was so is not asked for; what is not allowed is."""
-    return None if v.past or (v.may and not v.denied) else v
+def _asked(v: Verb | None, s: Names | None, wished: bool) -> bool:
+    """Whether it is asked for: what is only allowed is not, nor is what was so."""
+    if v is None:
+        return True
+    if v.past and not wished:
+        return False
+    none = s is not None and (s.denied or all(term.kind is Kind.NO for term in s.terms))
+    return not v.may or v.denied or none
 
 
-@rule("WISHVERB", "v:ANYVERB")
-def _wished_for(v: Verb) -> Verb | None:
-    return None if v.may else v
-
-
-def _relate(
+def relate(
     s: Names | None, l: tuple[Link, ...], v: Verb | None = None, bare: bool = False
 ) -> Relate | None:
-    if s is not None and s.either and not (v and v.denied):
-        return None
-    return Relate(s, l, bool(v and v.denied), bare)
+    denied = bool(v and v.denied)
+    if denied and s is not None and len(s.terms) == 1 and s.terms[0].kind is Kind.COUNT:
+        fewer = _denied_count(s.terms[0])
+        return fewer and Relate(Names((fewer,)), l)
+    return Relate(s, l, denied, bare)
 
 
-for _clause, _verb_kind in (("CLAUSE", "VERB"), ("WISHED", "WISHVERB")):
+def _denied_count(one: Term) -> Term | None:
+    """ "not at least two" as "at most one"; None: it is not clear how many may be."""
+    if (one.least, one.most) == (1, None):
+        return replace(one, kind=Kind.NO, least=0, most=0)
+    if one.most is None:
+        return replace(one, least=0, most=one.least - 1)
+    if one.least == 0:
+        return replace(one, least=one.most + 1, most=None)
+    return None
 
-    @rule(_clause, f"s:LISTED v:{_verb_kind} l:LINKS", f"s:LISTED COMMA 'it' v:{_verb_kind} l:LINKS",
-          f"THERE v:{_verb_kind} s:LISTED l:LINKS", f"l:LINKS v:{_verb_kind} s:LISTED", f"l:LINKS COMMA? THERE v:{_verb_kind} s:LISTED",
-          f"v:{_verb_kind} s:LISTED l:LINKS", f"'it' v:{_verb_kind} s:LISTED WHICH BE l:LINKS")  # fmt: skip
-    def _with_verb(s: Names, v: Verb, l: tuple[Link, ...]) -> Relate | None:
-        return _relate(s, l, v)
 
-    @rule(_clause, f"v:{_verb_kind} l:LINKS", cost=0.2)
-    def _without_subject(v: Verb, l: tuple[Link, ...]) -> Relate | None:
-        return _relate(None, l, v)
+def _before(l: tuple[Link, ...], s: Names) -> bool:
+    return l[0].words.offset < s.terms[0].words.offset
 
-    @rule(_clause, f"s:LISTED v:{_verb_kind}? NOTTOUCH l:LISTED")
-    def _apart_from(s: Names, l: Names, v: Verb | None = None) -> Item | None:
-        return None
 
-    @rule(_clause, f"s:LISTED v:{_verb_kind}? c:CLEAR", f"s:LISTED v:{_verb_kind}? n:NOT c:CLEAR",
-          f"s:LISTED COMMA 'it' v:{_verb_kind} c:CLEAR", f"v:{_verb_kind} c:CLEAR s:LISTED")  # fmt: skip
-    def _clear(s: Names, c: Word, v: Verb | None = None, n: Word | None = None) -> Clear | None:
-        denied = bool(v and v.denied)
-        if denied and n is not None:
+for _clause, _wished in (("CLAUSE", False), ("WISHED", True)):
+
+    @rule(_clause, "s:LISTED v:VERB l:LINKS", "s:LISTED COMMA? 'it' v:VERB l:LINKS",
+          "THERE v:VERB s:LISTED l:LINKS", "l:LINKS v:VERB s:LISTED", "l:LINKS COMMA? THERE v:VERB s:LISTED",
+          "l:LINKS v:MUSTNOT s:LISTED BE", "s:LISTED COMMA? WHICH v:VERB l:LINKS COMMA?", "MUST s:LISTED v:VERB l:LINKS")  # fmt: skip
+    @rule(_clause, "s:LISTED l:LINKS v:VERB", cost=0.4)
+    def _with_verb(s: Names, v: Verb, l: tuple[Link, ...], w: bool = _wished) -> Relate | None:
+        if not _asked(v, s, w) or (_before(l, s) and l[0].denied):
             return None
-        if s.denied:
-            s, denied = replace(s, denied=False), not denied
-        if s.either and not denied:
-            return None
-        return Clear(replace(s, either=False), denied or n is not None)
+        return relate(s, l, v)
 
-    @rule(_clause, f"s:LISTED v:{_verb_kind}? HAS o:LISTED ITSELFIN?", f"s:LISTED v:{_verb_kind}? HAS o:AMOUNTED ITSELFIN?",
-          f"s:LISTED v:{_verb_kind} o:AMOUNTED", f"s:LISTED v:{_verb_kind}? HAS o:LISTED x:EXCLUSIVE ITSELFIN?",
-          f"s:LISTED v:{_verb_kind}? HAS x:ONLY o:LISTED ITSELFIN?")  # fmt: skip
-    def _has(
-        s: Names, o: Names, v: Verb | None = None, x: Word | None = None
+    @rule(_clause, "m:LINKS COMMA? THERE v:VERB s:LISTED l:LINKS", "m:LINKS COMMA? s:LISTED v:VERB l:LINKS")
+    def _there_with(
+        m: tuple[Link, ...], s: Names, v: Verb, l: tuple[Link, ...], w: bool = _wished
     ) -> Relate | None:
-        if not all(term.is_place or term.words.text == "it" for term in s.terms) or s.either:
+        if not _asked(v, s, w) or v.denied or len(m) > 1 or m[0].denied or m[0].names is None:
             return None
-        if any(term.is_place for term in o.terms):
+        return Relate(s, (*m, *l)) if m[0].names.terms[0].is_place else None
+
+    @rule(_clause, "s:LISTED COMMA? WHICH v:VERB m:LINKS COMMA? u:VERB l:LINKS")
+    def _which(
+        s: Names, v: Verb, m: tuple[Link, ...], u: Verb, l: tuple[Link, ...], w: bool = _wished
+    ) -> Relate | None:
+        if v.denied or u.denied or v.may or u.may or v.past or u.past:
+            return None
+        return Relate(s, (*m, *l)) if m[0].how == "clear" else None
+
+    @rule(_clause, "v:VERB l:LINKS", cost=0.2)
+    def _without_subject(v: Verb, l: tuple[Link, ...], w: bool = _wished) -> Relate | None:
+        return relate(None, l, v) if _asked(v, None, w) and not v.floats else None
+
+    @rule(_clause, "s:LISTED v:VERB? HAS o:LISTED ITSELFIN?", "s:LISTED v:VERB? HAS o:AMOUNTED ITSELFIN?",
+          "s:LISTED v:VERB o:AMOUNTED", "s:LISTED v:VERB? HAS o:LISTED x:EXCLUSIVE ITSELFIN?",
+          "s:LISTED v:VERB? HAS x:ONLY o:LISTED ITSELFIN?", "THE? HEIGHT 'of' s:LISTED v:VERB? o:AMOUNTED",
+          "s:LISTED v:VERB HIGHER MORETHAN? o:AMOUNTED")  # fmt: skip
+    def _has(
+        s: Names, o: Names, v: Verb | None = None, x: Word | None = None, w: bool = _wished
+    ) -> Relate | None:
+        if not all(_is_place(term) for term in s.terms) or s.either:
+            return None
+        if any(term.is_place for term in o.terms) or not _asked(v, s, w):
             return None
         if x is not None:
             if any(term.kind is not Kind.THE for term in o.terms):
                 return None
             o = replace(o, terms=tuple(replace(term, only=True) for term in o.terms))
-        return _has_them(s, o, v, (Link(s.terms[0].words, INSIDE, s),))
+        return _has_them(s, o, v, Link(s.terms[0].words, INSIDE, s))
 
-    @rule(_clause, f"s:LISTED v:{_verb_kind}? HAS o:LISTED p:ITSPHRASE")
-    def _has_on_it(s: Names, o: Names, p: Link, v: Verb | None = None) -> Relate | None:
+    @rule(_clause, "s:LISTED v:VERB? HAS o:LISTED p:ITSPHRASE")
+    def _has_on_it(
+        s: Names, o: Names, p: Link, v: Verb | None = None, w: bool = _wished
+    ) -> Relate | None:
         if any(term.is_place for term in (*s.terms, *o.terms)) or s.either:
             return None
-        return _has_them(s, o, v, (replace(p, names=s),))
+        return _has_them(s, o, v, replace(p, names=s)) if _asked(v, s, w) else None
 
-    @rule(_clause, f"s:LISTED v:{_verb_kind}? COVERED o:LISTED", f"s:LISTED v:{_verb_kind}? SUPPORTED o:LISTED")
-    def _covered(s: Names, o: Names, v: Verb | None = None) -> Relate | None:
-        return None if s.either else _has_them(s, o, v, (Link(s.terms[0].words, UPON, s),))
-
-    @rule(_clause, f"s:LISTED v:{_verb_kind}? SHARE A? PLACENOUN", f"s:LISTED v:{_verb_kind}? SHARE A? PLACENOUN 'with' o:LISTED",
-          f"s:LISTED v:{_verb_kind}? SHARE p:PLACE")  # fmt: skip
-    def _share(
-        s: Names, v: Verb | None = None, o: Names | None = None, p: Term | None = None
+    @rule(_clause, "s:LISTED v:VERB? COVERED o:LISTED", "s:LISTED v:VERB? SUPPORTED o:LISTED", "s:LISTED v:VERB CARRY o:LISTED")
+    def _covered(
+        s: Names, o: Names, v: Verb | None = None, w: bool = _wished
     ) -> Relate | None:
+        if s.either or not _asked(v, s, w) or any(term.is_place for term in (*s.terms, *o.terms)):
+            return None
+        return _has_them(s, o, v, Link(s.terms[0].words, UPON, s))
+
+    @rule(_clause, "s:LISTED v:VERB? SHARE A? PLACENOUN", "s:LISTED v:VERB? SHARE A? PLACENOUN 'with' o:LISTED",
+          "s:LISTED v:VERB? SHARE p:PLACE")  # fmt: skip
+    def _share(
+        s: Names, v: Verb | None = None, o: Names | None = None, p: Term | None = None,
+        w: bool = _wished,
+    ) -> Relate | None:  # fmt: skip
         link = Link(s.terms[0].words, how="same", names=o)
         if p is not None:
             link = Link(p.words, INSIDE, Names((p,)))
-        return _relate(s, (link,), v)
+        return relate(s, (link,), v) if _asked(v, s, w) else None
 
-    @rule(_clause, f"e:EDGE v:{_verb_kind} b:LISTED", f"b:LISTED v:{_verb_kind} e:EDGE")
-    def _edge_is(e: Link, v: Verb, b: Names) -> Relate | None:
+    @rule(_clause, "NO 'two' n:NAME v:VERB? SAMEPLACE", "NO 'two' n:NAME v:VERB? SHARE A? PLACENOUN")
+    def _no_two(n: tuple[Words, bool], v: Verb | None = None, w: bool = _wished) -> Relate | None:
+        if v and v.denied:
+            return None
+        return Relate(Names((term_of(n[0], Kind.EVERY),)), (Link(n[0], how="different"),))
+
+    @rule(_clause, "e:EDGE v:VERB b:LISTED", "b:LISTED v:VERB e:EDGE")
+    def _edge_is(e: Link, v: Verb, b: Names, w: bool = _wished) -> Relate | None:
         if len(b.terms) > 1 or b.terms[0].kind is not Kind.THE or b.terms[0].is_place or v.denied:
             return None
-        return Relate(b, (e,), v.denied)
+        return Relate(b, (e,)) if _asked(v, b, w) else None
 
-    @rule(_clause, f"o:ONLY s:LISTED v:{_verb_kind}? l:LINKS", f"s:LISTED o:ONLY l:LINKS", f"s:LISTED v:{_verb_kind} o:THEONLY l:LINKS",
-          f"o:THEONLY l:LINKS v:{_verb_kind} s:LISTED", f"l:LINKS v:{_verb_kind}? o:ONLY s:LISTED", f"THERE v:{_verb_kind} o:ONLY s:LISTED l:LINKS",
-          f"l:LINKS THERE v:{_verb_kind} o:ONLY s:LISTED",
-          f"s:LISTED o:EXCLUSIVE v:{_verb_kind}? l:LINKS", f"s:LISTED v:{_verb_kind}? l:LINKS o:EXCLUSIVE")  # fmt: skip
-    def _only(s: Names, l: tuple[Link, ...], o: Word | str, v: Verb | None = None) -> Relate | None:
-        if (v and v.denied) or s.either or len(l) > 1 or l[0].denied:
+    @rule(_clause, "THE HEAD WHICH? WHO WANT l:LINKS v:VERB s:LISTED", "'what' WHO WANT l:LINKS v:VERB s:LISTED",
+          "s:LISTED v:VERB 'what' WHO WANT l:LINKS", "s:LISTED v:VERB THE HEAD WHICH? WHO WANT l:LINKS", "'what' BE l:LINKS v:VERB s:LISTED", "'it' v:VERB s:LISTED WHICH VERB l:LINKS")  # fmt: skip
+    def _what(l: tuple[Link, ...], v: Verb, s: Names, w: bool = _wished) -> Relate | None:
+        if v.denied or not _asked(v, s, w) or any(term.kind is not Kind.THE for term in s.terms):
             return None
-        if any(term.is_place for term in s.terms):
+        return None if s.either or s.denied else Relate(s, l)
+
+    @rule(_clause, "THE HEAD r:RELATION WHICH t:LISTED VERB v:VERB s:LISTED", "THE HEAD r:RELATION WHICH t:LISTED v:VERB s:LISTED")
+    def _on_which(r: Word, t: Names, v: Verb, s: Names, w: bool = _wished) -> Relate | None:
+        if v.denied or v.may or s.either or t.either:
+            return None
+        return Relate(t, (Link(words_of(r), r.phrase, s),))
+
+    @rule(_clause, "o:ONLY s:LISTED v:VERB? l:LINKS", "s:LISTED v:VERB o:THEONLY l:LINKS",
+          "o:THEONLY l:LINKS v:VERB s:LISTED", "l:LINKS v:VERB? o:ONLY s:LISTED", "THERE v:VERB o:ONLY s:LISTED l:LINKS",
+          "l:LINKS THERE v:VERB o:ONLY s:LISTED",
+          "s:LISTED o:EXCLUSIVE v:VERB? l:LINKS", "s:LISTED v:VERB? l:LINKS o:EXCLUSIVE")  # fmt: skip
+    def _only(
+        s: Names, l: tuple[Link, ...], o: Word | str, v: Verb | None = None, w: bool = _wished
+    ) -> Relate | None:
+        if (v and v.denied) or s.either or s.denied or len(l) > 1 or l[0].denied:
+            return None
+        if any(term.is_place for term in s.terms) or not _asked(v, s, w):
             return None
         return Relate(replace(s, terms=tuple(replace(one, only=True) for one in s.terms)), l)
 
 
-def _has_them(s: Names, o: Names, v: Verb | None, l: tuple[Link, ...]) -> Relate | None:
+def _is_place(term: Term) -> bool:
+    return term.is_place or term.words.text in ("it", "stack")
+
+
+@rule("MUSTNOT", "w:MUST", "w:MUST NOT?")
+def _must(w: Word) -> Verb:
+    return Verb()
+
+
+def _has_them(s: Names, o: Names, v: Verb | None, l: Link) -> Relate | None:
     """That something has others, said of these."""
     denied = bool(v and v.denied)
     if s.denied:
-        l, denied = (replace(l[0], names=replace(s, denied=False)),), not denied
+        s, denied = replace(s, denied=False), not denied
+    if len(s.terms) == 1 and s.terms[0].kind is Kind.NO:
+        every = replace(s.terms[0], kind=Kind.EVERY, least=1, most=None)
+        s, denied = Names((every,)), not denied
+    l = replace(l, names=s)
     if denied and len(o.terms) == 1 and o.terms[0].kind is Kind.COUNT:
-        one = o.terms[0]
-        if (one.least, one.most) == (1, None):
-            o, denied = Names((replace(one, kind=Kind.NO, least=0, most=0),)), False
-        elif one.most is None:
-            o, denied = Names((replace(one, least=0, most=one.least - 1),)), False
-        elif one.least == 0:
-            o, denied = Names((replace(one, least=(one.most or 0) + 1, most=None),)), False
-        else:
+        fewer = _denied_count(o.terms[0])
+        if fewer is None:
             return None
+        o, denied = Names((fewer,)), False
     if o.either and not denied:
         return None
-    return Relate(o, l, denied, about=True)
+    return Relate(o, (l,), denied, about=True)
 
 
-@rule("AMOUNTED", "q:AMOUNT", "q:AMOUNT HIGH", "q:AMOUNT NOUNS HIGH", "q:AMOUNT NOUN HIGH", "HIGHER w:MORETHANTHAN k:NUMBER NOUNS?")
-def _amounted(
-    q: tuple[int, int | None] | None = None, w: Word | None = None, k: Word | None = None
-) -> Names | None:
-    if q is None:
-        return None
-    from ..terms import Words
-
+@rule("AMOUNTED", "q:AMOUNT", "q:AMOUNT HIGH", "q:AMOUNT NOUNS HIGH", "q:AMOUNT NOUN HIGH", "q:AMOUNT NOUNS", "q:AMOUNT NOUN")
+def _amounted(q: tuple[int, int | None]) -> Names:
     words = Words("block", 0, 0)
     if q[1] == 0:
         return Names((term_of(words, Kind.NO, least=0, most=0),))
@@ -199,8 +265,6 @@ def _its_phrase(w: Word) -> Link | None:
 
 @rule("ITSPHRASE", "'to' POSSESSIVE s:SIDE", "'on' POSSESSIVE s:SIDE", "'at' POSSESSIVE s:SIDE")
 def _its_side(s: Word) -> Link | None:
-    from scene_graph import LEFT, PREDICATES, Phrase
-
     if s.text not in ("left", "right"):
         return None
     return Link(words_of(s), Phrase(PREDICATES[LEFT], inverse=s.text == "right"))
@@ -231,15 +295,24 @@ def _exclusive(w: Word) -> Word:
 # Without a verb, and commands
 
 
-@rule("CLAUSE", "s:LISTED l:LINKS", "s:LISTED COLON l:LINKS", "s:LISTED COMMA 'it' l:LINKS")
+@rule("CLAUSE", "s:LISTED l:LINKS", "s:LISTED COLON l:LINKS", "s:LISTED COMMA? 'it' l:LINKS", "s:LISTED COMMA? SOTHAT 'it' VERB l:LINKS")
 @rule("CLAUSE", "l:LINKS s:LISTED", "l:LINKS COMMA s:LISTED", cost=0.4)
 @rule("CLAUSE", "s:LISTED STOP l:LINKS", cost=1.0)
 @rule("WISHED", "s:LISTED l:LINKS")
 def _bare(s: Names, l: tuple[Link, ...]) -> Relate | None:
-    return _relate(s, l, bare=True)
+    if _before(l, s) and l[0].denied:
+        return None
+    return relate(s, l, bare=True)
 
 
-@rule("CLAUSE", "s:LISTED p:BAREPLACE", "p:BAREPLACE COLON s:LISTED", "p:BAREPLACE BE s:LISTED", "p:BAREPLACE n:AMOUNTED")
+@rule("CLAUSE", "p:HEADPLACE COLON s:LISTED l:LINKS")
+def _at_place(p: Term, s: Names, l: tuple[Link, ...]) -> Relate | None:
+    if l[0].denied or l[0].names is None or l[0].names.terms[0].is_place:
+        return None
+    return Relate(s, (Link(p.words, INSIDE, Names((p,))), *l), bare=True)
+
+
+@rule("CLAUSE", "s:LISTED p:BAREPLACE", "s:LISTED COLON p:BAREPLACE", "p:HEADPLACE COLON s:LISTED", "p:BAREPLACE BE s:LISTED", "p:BAREPLACE n:AMOUNTED")
 @rule("CLAUSE", "p:BAREPLACE s:LISTED", cost=0.8)
 def _beside_place(p: Term, s: Names | None = None, n: Names | None = None) -> Relate | None:
     s = s or n
@@ -254,26 +327,61 @@ def _bare_place(p: Term) -> Term:
     return p
 
 
+@rule("HEADPLACE", "p:BAREPLACE")
+def _heading_place(p: Term) -> Term | None:
+    """Not "s0:", behind which no one knows what the order means."""
+    return None if 0 < p.words.end - p.words.offset < 4 and p.words.text[0] == "s" else p
+
+
+@rule("BAREPLACE", "w:SIDE", cost=0.5)
+def _outermost(w: Word) -> Term | None:
+    if "most" not in w.text:
+        return None
+    return term_of(words_of(w, text=f"{w.means} stack"))
+
+
 @rule("CLAUSE", "l:LINKS", cost=0.4)
 def _links_alone(l: tuple[Link, ...]) -> Relate:
     return Relate(None, l, bare=True)
 
 
 @rule("CLAUSE", "p:PUTS s:LISTED l:LINKS", "p:PUTS s:LISTED BE l:LINKS", "p:PUTS l:LINKS s:LISTED", "p:PUTS l:LINKS COMMA s:LISTED",
-      "l:LINKS COMMA? p:PUTS s:LISTED", "s:LISTED COMMA p:PUTS ITORTHEM l:LINKS", "p:PUTS s:LISTED COMMA l:LINKS",
-      "l:LINKS COMMA? MUST p:PUTS s:LISTED")  # fmt: skip
+      "l:LINKS COMMA? p:PUTS s:LISTED", "p:PUTS s:LISTED COMMA l:LINKS",
+      "l:LINKS COMMA? MUST p:PUTS s:LISTED", "l:LINKS COMMA? p:WANTS s:LISTED", "p:PUTS s:LISTED SOTHAT 'it' VERB l:LINKS", "p:PUTS s:LISTED FLOAT l:LINKS",
+      "p:PUTS s:LISTED BE PLACED l:LINKS", "p:PUTS s:LISTED PLACED l:LINKS", "p:PUTS s:LISTED BE e:EDGE")  # fmt: skip
 @rule("CLAUSE", "p:TAKES s:LISTED l:LINKS", cost=0.3)
-def _command(p: bool, s: Names, l: tuple[Link, ...]) -> Relate | None:
-    if s.either and not p:
+def _command(
+    p: bool, s: Names, l: tuple[Link, ...] = (), e: Link | None = None
+) -> Relate | None:
+    if e is not None:
+        return None if p or len(s.terms) > 1 else Relate(s, (e,))
+    if _before(l, s) and l[0].denied:
         return None
-    if p and len(s.terms) == 1 and s.terms[0].kind is Kind.COUNT:
-        # "do not put anything on red"
-        if (s.terms[0].least, s.terms[0].most) != (1, None):
-            return None
-        return Relate(Names((replace(s.terms[0], kind=Kind.NO, least=0, most=0),)), l)
-    if p and s.terms[0].kind is Kind.EVERY and s.terms[0].words.text == "block":
-        return Relate(Names((replace(s.terms[0], kind=Kind.NO, least=0, most=0, bare=False),)), l)
-    return _relate(s, l, Verb(p))
+    return relate(s, l, Verb(p))
+
+
+@rule("CLAUSE", "s:LISTED COMMA p:PUTS ITORTHEM l:LINKS")
+def _command_of_that(p: bool, s: Names, l: tuple[Link, ...]) -> Relate | None:
+    return None if any(one.how == "side" for one in l) else relate(s, l, Verb(p))
+
+
+@rule("CLAUSE", "NOT s:LISTED l:LINKS", cost=0.3)
+def _not_so(s: Names, l: tuple[Link, ...]) -> Relate | None:
+    return relate(s, l, Verb(denied=True)) if len(l) == 1 and not _before(l, s) else None
+
+
+@rule("CLAUSE", "HEADING 'with' s:LISTED", "HEADING OFOF s:LISTED", "HEADING 'out' 'of' s:LISTED", cost=0.5)
+def _one_tower(s: Names) -> Relate | None:
+    """ "make one tower with all five blocks"."""
+    if len(s.terms) > 1 or s.terms[0].kind is not Kind.EVERY or s.terms[0].is_place:
+        return None
+    term = replace(s.terms[0], bare=False)
+    return Relate(Names((term,)), (Link(term.words, how="same"),))
+
+
+@rule("WANTS", "WHO WANT")
+def _wants() -> bool:
+    return False
 
 
 @rule("CLAUSE", "p:PUTS l:LINKS", cost=0.3)
@@ -302,17 +410,9 @@ def _puts_not(w: Word, w2: Word | None = None) -> bool:
     return True
 
 
-@rule("CLAUSE", "PUT s:LISTED c:CLEAR", "CLEARS s:LISTED", "CLEARS THE? TOPOF s:LISTED", "PUT c:CLEAR s:LISTED", "PUT s:LISTED BE c:CLEAR", "PUT TOPOF s:LISTED c:CLEAR",
-      "'clear' s:LISTED", "n:NOTLEAVE s:LISTED c:CLEAR", "COVER s:LISTED 'with' NOTHING")  # fmt: skip
-def _clear_it(s: Names, c: Word | None = None, n: Word | None = None) -> Clear | None:
-    if s.denied:
-        return None
-    return Clear(replace(s, either=False), denied=n is not None)
-
-
-@rule("NOTLEAVE", "DO w:NOT PUT", "w:NOT PUT")
-def _not_leave(w: Word) -> Word:
-    return w
+@rule("CLAUSE", "w:CLEARS s:LISTED", "CLEARS THE? w:TOPOF s:LISTED", "PUT w:TOPOF s:LISTED CLEAR", "COVER s:LISTED 'with' w:NOTHING", "THE? w:TOPOF s:LISTED VERB? CLEAR")
+def _clear_it(s: Names, w: Word) -> Relate | None:
+    return Relate(s, (Link(words_of(w), how="clear"),))
 
 
 @rule("CLAUSE", "n:COVERS s:LISTED 'with' o:LISTED")
@@ -338,11 +438,8 @@ def _take(s: Names) -> Take | None:
 def _take_off(s: Names, o: Link) -> Item | None:
     if s.either or any(term.is_place for term in s.terms):
         return None
-    if all(term.kind in (Kind.EVERY, Kind.COUNT) for term in s.terms):
-        terms = tuple(replace(one, kind=Kind.NO, least=0, most=0, bare=False) for one in s.terms)
-        if len(terms) > 1 or s.terms[0].most is not None:
-            return None
-        return Relate(Names(terms), (replace(o, denied=False),))
+    if any(term.kind is Kind.COUNT for term in s.terms):
+        return None
     return Take(s, o)
 
 
@@ -350,12 +447,14 @@ def _take_off(s: Names, o: Link) -> Item | None:
 def _take_from_to(s: Names, o: Link, l: tuple[Link, ...]) -> Relate | None:
     if any(one.denied for one in l) or s.either:
         return None
-    return Relate(s, l)
+    if "from" in o.words.text:
+        return None
+    return Relate(s, (o, *l))
 
 
 @rule("CLAUSE", "s:LISTED o:OFFLINK", "s:LISTED v:VERB o:OFFLINK", cost=0.3)
 def _comes_off(s: Names, o: Link, v: Verb | None = None) -> Item | None:
-    if v and v.denied:
+    if (v and not _asked(v, s, False)) or (v and v.denied) or "off" not in o.words.text:
         return None
     return _take_off(s, o)
 

@@ -13,7 +13,7 @@ from ...errors import InvalidGoalError
 from ..objections import check_places, unclear, untold
 from ..parsed import ParsedRelation, in_one_place, none_but
 from ..terms import Described, Kind, Term, Words, is_any_place
-from .meaning import Again, Change, Changed, Clear, Item, Link, Names, Relate, Row, Take
+from .meaning import Again, Change, Changed, Item, Link, Mention, Names, Relate, Row, Take
 from .nominal import INSIDE, UPON
 
 _BESIDE = Phrase(PREDICATES[BESIDE])
@@ -39,6 +39,9 @@ class Discourse:
         self._off: Link | None = None
         #: Whether the last clause was denied by its verb.
         self._denied = False
+        #: A name of which nothing is said yet.
+        self._mentioned: Term | None = None
+        self._sides = False
 
     def read(self, items: Iterable[Item]) -> tuple[Said, ...]:
         """The relations of all items.
@@ -49,8 +52,8 @@ class Discourse:
         for item in items:
             if isinstance(item, Relate):
                 self._relate(item)
-            elif isinstance(item, Clear):
-                self._clear(item)
+            elif isinstance(item, Mention):
+                self._mention(item)
             elif isinstance(item, Row):
                 self._row(item)
             elif isinstance(item, Take):
@@ -60,6 +63,12 @@ class Discourse:
             else:
                 self._change(item)
         self._put_down()
+        if self._mentioned is not None:
+            raise untold(self._mentioned)
+        if self._sides:
+            for said in self.relations:
+                if isinstance(said, ParsedRelation) and said.phrase.predicate.name == LEFT:
+                    raise unclear(said.subject)  # on the left of all, or of something?
         return tuple(dict.fromkeys(self.relations))
 
     # Who is meant
@@ -77,6 +86,9 @@ class Discourse:
         """A name itself; for "it" the one that it can only stand for."""
         if not self._is_it(term):
             return term
+        if self._mentioned is not None:
+            mentioned, self._mentioned = self._mentioned, None
+            return mentioned
         if phrase is not None and phrase.needs_place and self.object and self.object.is_place:
             return self.object
         subject = self.subjects[0] if len(self.subjects) == 1 else None
@@ -124,6 +136,9 @@ class Discourse:
         denied = item.denied
         if item.subject is not None and item.subject.denied:
             denied = not denied
+        none = bool(subjects) and all(term.kind is Kind.NO for term in subjects)
+        if none and any(link.denied for link in item.links):
+            raise unclear(subjects[0])
         open_links = [link for link in item.links if not link.denied]
         if denied and len(item.links) > 1 and (
             len(open_links) < len(item.links)
@@ -132,7 +147,7 @@ class Discourse:
             # Not on blue and not left of green, or not both?
             if not (len(item.links) == 2 and item.links[1].chained):
                 raise _unclear_words(item.links[1].words)
-        if not denied and any(link.how == "or" for link in item.links) and not all(
+        if not (denied or none) and any(link.how == "or" for link in item.links) and not all(
             link.denied for link in item.links
         ):
             first_denied = item.links[0].denied
@@ -151,7 +166,7 @@ class Discourse:
             if link.chained:
                 subjects = [self.object] if self.object else subjects
             self._link(subjects, link, denied != link.denied, item, carried)
-            carried = False
+            carried = not link.chained
         if item.about and item.links[-1].names is not None:
             names = self._who(item.links[-1].names, item.links[-1].phrase)
             if not names[-1].is_place:
@@ -202,6 +217,13 @@ class Discourse:
     ) -> None:
         how = link.how if link.how != "or" else ""
         written = link.words
+        if how == "clear":
+            self._clear(subjects, denied)
+            return
+        if how == "side":
+            if any(self._is_it(term) for term in (item.subject.terms if item.subject else ())):
+                raise _unclear_words(written)
+            self._sides = True
         if how in ("top", "bottom"):
             self._edge(subjects, link, denied)
             return
@@ -218,7 +240,8 @@ class Discourse:
                 raise _unclear_words(written)
             self.relations += found
             self._name(*blocks)
-            self.subjects, self.object = blocks[:1], None
+            self.subjects, self.object = blocks[:1], others[-1] if others else None
+            self.link = None
             return
         if how == "each other":
             if len(subjects) == 1 and subjects[0].exact == 2:
@@ -337,36 +360,28 @@ class Discourse:
         nothing = Term(Words("block", term.words.offset), Kind.NO, 0, 0)
         self.relations.append(ParsedRelation(nothing, UPON, term))
 
-    def _clear(self, item: Clear) -> None:
-        if self._taken and not (item.names and self._is_it(item.names.terms[0])):
-            self._put_down()
-        terms = list(self.subjects)
-        if item.names is not None:
-            if self._taken and len(item.names.terms) == 1 and self._is_it(item.names.terms[0]):
-                terms = list(self._taken)
-            else:
-                terms = self._who(item.names)
-        if not terms:
-            raise InvalidGoalError("there is no block before this")
+    def _clear(self, terms: Sequence[Term], denied: bool) -> None:
         for term in terms:
-            if item.denied:
-                if term.kind not in (Kind.THE, Kind.EVERY, Kind.NO):
-                    raise unclear(term)
-                if term.kind is Kind.NO:
-                    term = replace(term, kind=Kind.EVERY)
-                some = Term(Words("block", term.words.offset), Kind.COUNT)
-                phrase = INSIDE if term.is_place else UPON
-                self.relations.append(ParsedRelation(some, phrase, term))
-            elif term.kind is Kind.NO and term.words.text == "stack":
-                some = Term(Words("block", term.words.offset), Kind.COUNT)
-                every = replace(term, kind=Kind.EVERY)
-                self.relations.append(ParsedRelation(some, INSIDE, every))
-            elif term.kind in (Kind.THE, Kind.EVERY):
-                self._nothing_on(term)
-            else:
+            if term.kind is Kind.NO:
+                term, denied = replace(term, kind=Kind.EVERY), not denied
+            if term.kind not in (Kind.THE, Kind.EVERY):
                 raise unclear(term)
+            if denied:
+                some = Term(Words("block", term.words.offset), Kind.COUNT)
+                place = term.is_place or term.words.text == "stack"
+                phrase = INSIDE if place else UPON
+                self.relations.append(ParsedRelation(some, phrase, term))
+            else:
+                self._nothing_on(term)
             self._name(term)
-        self.subjects, self.object = terms, None
+        self.subjects, self.object = list(terms), None
+
+    def _mention(self, item: Mention) -> None:
+        self._put_down()
+        if self._mentioned is not None:
+            raise unclear(self._mentioned)
+        self._mentioned = item.term
+        self.subjects, self.object, self.link = [item.term], None, None
         self._denied = False
 
     def _row(self, item: Row) -> None:
@@ -442,6 +457,11 @@ class Discourse:
             raise unclear(object_)
         if denied and any(term.kind in (Kind.NO, Kind.COUNT) for term in subjects):
             raise unclear(subjects[0])
+        if denied and len(subjects) == 1 and subjects[0].kind is Kind.EVERY:
+            one = subjects[0]
+            if one.words.text == "block" and not one.but and not one.others and not one.only:
+                none_of = replace(one, kind=Kind.NO, least=0, most=0, bare=False)
+                subjects, denied = [none_of], False
         if len(subjects) > 1 and subjects[-1].kind is Kind.NO and subjects[-1].others:
             subjects = [replace(subject, only=True) for subject in subjects[:-1]]
         if only := [subject for subject in subjects if subject.only]:
@@ -450,7 +470,7 @@ class Discourse:
                 return
             subjects = [replace(subject, only=False) for subject in subjects]
         for subject in subjects:
-            subject = self._among_others(subject)
+            subject = self._among_others(subject, phrase, object_)
             if subject.kind in (Kind.EVERY, Kind.COUNT) and not subject.others:
                 self._kinds.append(subject)
             for term in (subject, object_):
@@ -467,10 +487,35 @@ class Discourse:
                 meaning = phrase._replace(predicate=PREDICATES[ABOVE])
             self.relations.append(ParsedRelation(subject, meaning, object_, denied))
 
-    def _among_others(self, subject: Term) -> Term:
+    def _among_others(self, subject: Term, phrase: Phrase, object_: Term) -> Term:
         """ "the rest" as all but those that were named."""
+        before = self.subjects[0] if len(self.subjects) == 1 else None
+        counted = before is not None and before.kind is Kind.COUNT and before.most == before.least
+        if subject.kind is Kind.COUNT and subject.bare:
+            if before is None or before.kind is not Kind.COUNT or before.others:
+                if not object_.is_place or subject.least == subject.most:
+                    raise unclear(subject)
+                return replace(subject, bare=False)  # "at most two per stack"
+            return replace(subject, words=before.words, bare=False)
+        if subject.kind is Kind.EVERY and subject.others and subject.exact and counted:
+            assert before is not None
+            # "three in stack1, the other two in stack2": there are no more of them than these.
+            number = subject.exact
+            return replace(
+                before, least=number, most=number, exact=before.least + number, bare=False
+            )
         if not subject.others:
             return subject
+        if subject.kind is Kind.NO and phrase == UPON and not object_.is_place:
+            on_it = [
+                said.subject
+                for said in self.relations
+                if isinstance(said, ParsedRelation)
+                and said.phrase == UPON
+                and said.object.words.text == object_.words.text
+                and not said.negated
+            ]
+            return replace(subject, others=False, but=tuple(on_it))
         spoken = [*self._named.values(), *self._kinds]
         if not spoken or any(term.kind is Kind.COUNT for term in spoken):
             raise unclear(subject)

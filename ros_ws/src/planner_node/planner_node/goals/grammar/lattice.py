@@ -61,21 +61,24 @@ def lattice_of(
     """
     index = _index(tuple(PREDICATES.phrases.items()))
     known = {word for listed in index.values() for _, words, _, _ in listed for word in words}
-    known |= set(literals) | set(SHAPES) | {"red_box"}
-    costs, words = [], []
+    known |= set(literals) | set(SHAPES)
+    right = frozenset(known - NO_SLIPS)
+    costs: list[float] = []
+    words: list[tuple[str, ...]] = []
     for token in tokens:
-        better = token.text
+        better: tuple[str, ...] = ()
         if token.text not in known and token.text.isalpha() and token.text not in NO_SLIPS:
-            better = mended(token.text, known - NO_SLIPS) or token.text
-        words.append(better)
-        costs.append(_MENDED * (better != token.text))
+            better = mended(token.text, right)
+        words.append(better or (token.text,))
+        costs.append(_MENDED * bool(better))
     found: list[dict[str, list[tuple[int, Word, float]]]] = []
     fillers: list[list[tuple[int, float]]] = []
     for start, token in enumerate(tokens):
         here: dict[str, list[tuple[int, Word, float]]] = {}
         skips: list[tuple[int, float]] = []
-        longest = 1
-        for kind, entry, means, phrase in index.get(words[start], ()):
+        for kind, entry, means, phrase in (
+            one for word in words[start] for one in index.get(word, ())
+        ):
             end = _end(words, start, entry)
             if end is None:
                 continue
@@ -83,28 +86,31 @@ def lattice_of(
             if kind == "FILLER":
                 skips.append((end, cost + _LEFT_OUT))
                 continue
-            longest = max(longest, end - start)
             text = " ".join(entry)
             word = Word(text, means, token.offset, tokens[end - 1].end, phrase)
             here.setdefault(kind, []).append((end, word, cost))
-        for kind, means in _kinds(words[start], known):
-            word = Word(words[start], means, token.offset, token.end)
-            here.setdefault(kind, []).append((start + 1, word, costs[start]))
-        if words[start] in literals:
-            word = Word(words[start], words[start], token.offset, token.end)
-            here[f"'{words[start]}'"] = [(start + 1, word, costs[start])]
+        if costs[start] and token.text[0].isalpha():
+            word = Word(token.text, token.text, token.offset, token.end)
+            here["UNKNOWN"] = [(start + 1, word, costs[start] + 0.2)]
+        for said in words[start]:
+            for kind, means in _kinds(said, known):
+                word = Word(said, means, token.offset, token.end)
+                here.setdefault(kind, []).append((start + 1, word, costs[start]))
+            if said in literals:
+                word = Word(said, said, token.offset, token.end)
+                here[f"'{said}'"] = [(start + 1, word, costs[start])]
         found.append(here)
-        fillers.append([(end, cost) for end, cost in skips if end - start >= longest])
+        fillers.append(skips)
     return _with_fillers(found, fillers, words)
 
 
-def _end(words: Sequence[str], start: int, entry: Sequence[str]) -> int | None:
+def _end(words: Sequence[Sequence[str]], start: int, entry: Sequence[str]) -> int | None:
     """Where an entry ends that begins here; articles between its words do not matter."""
     at = start
     for number, word in enumerate(entry):
-        if number and at < len(words) and words[at] == "the" and word != "the":
+        if number and at < len(words) and words[at] == ("the",) and word != "the":
             at += 1
-        if at >= len(words) or words[at] != word:
+        if at >= len(words) or word not in words[at]:
             return None
         at += 1
     return at
@@ -126,14 +132,14 @@ def _kinds(word: str, known: Collection[str]) -> Iterator[tuple[str, str]]:
 def _with_fillers(
     found: list[dict[str, list[tuple[int, Word, float]]]],
     fillers: list[list[tuple[int, float]]],
-    words: Sequence[str],
+    words: Sequence[Sequence[str]],
 ) -> list[dict[str, list[tuple[int, Word, float]]]]:
     behind: list[dict[int, float]] = [{} for _ in range(len(words) + 1)]
     for start in range(len(words), -1, -1):
         reached = {start: 0.0}
         if start < len(words):
             openings = [(start, 0.0)]
-            if words[start] in (",", "-", "."):
+            if words[start][0] in (",", "-", "."):
                 openings = [(start + 1, _COMMA)]
             for first, extra in openings:
                 if first >= len(words):
@@ -141,7 +147,7 @@ def _with_fillers(
                 for end, cost in fillers[first]:
                     for last, more in behind[end].items():
                         _keep(reached, last, extra + cost + more)
-                    if end < len(words) and words[end] == ",":
+                    if end < len(words) and words[end] == (",",):
                         for last, more in behind[end + 1].items():
                             _keep(reached, last, extra + cost + _COMMA + more)
         behind[start] = reached

@@ -30,8 +30,8 @@ class Link:
 
     Attributes:
         how: what it is where it is no phrase: ``top``, ``bottom``, ``middle`` (of ``names``, or of
-            what was spoken of), ``there``, ``alone``, ``each other``, ``same``, ``different`` (as
-            ``names``, or among themselves), ``where`` (another one is now), ``elsewhere``.
+            what was spoken of), ``there``, ``alone``, ``clear``, ``each other``, ``same``, ``different`` (as
+            ``names``, or among themselves), ``side`` (a phrase, but of a side), ``where`` (another one is now), ``elsewhere``.
         adjacent: the places are neighbours too: "directly left of".
         chained: its subject is the object of the link before.
     """
@@ -64,11 +64,10 @@ class Relate:
 
 
 @dataclass(frozen=True)
-class Clear:
-    """Nothing is on them, or in them; ``denied``: something is."""
+class Mention:
+    """A block of which something is said next: "blue first, red on that"."""
 
-    names: Names | None
-    denied: bool = False
+    term: Term
 
 
 @dataclass(frozen=True)
@@ -126,4 +125,4 @@ class Changed:
     steps: int = 0
 
 
-Item = Relate | Clear | Row | Take | Again | Change
+Item = Relate | Mention | Row | Take | Again | Change

@@ -18,8 +18,10 @@ rule = GRAMMAR.rule
 
 
 def words_of(*said: Word | None, text: str | None = None) -> Words:
-    """Some words as one."""
+    """Some words as one, in their order."""
     there = [one for one in said if one is not None]
+    if text is None:
+        there.sort(key=lambda word: word.offset)
     told = " ".join(one.means for one in there) if text is None else text
     return Words(told, min(one.offset for one in there), max(one.end for one in there))
 
@@ -176,9 +178,29 @@ def _number(q: tuple[int, int | None], n: tuple[Words, bool], k: Word | None = N
     return term_of(n[0], Kind.COUNT, least=q[0], most=q[1])
 
 
-@rule("BAREAMOUNT", "q:AMOUNT")
-def _bare(q: tuple[int, int | None]) -> tuple[int, int | None]:
-    return q
+@rule("TERM", "q:AMOUNT", "q:AMOUNT 'of' 'them'", cost=0.6)
+def _bare(q: tuple[int, int | None]) -> Term | None:
+    if q == (1, 1):
+        return None
+    return term_of(Words("block", 0, 0), Kind.COUNT, least=q[0], most=q[1], bare=True)
+
+
+@rule("TERM", "w:NUMBER", "EXACTLY w:NUMBER", cost=0.6)
+def _bare_one(w: Word) -> Term | None:
+    if w.means != "1":
+        return None
+    return term_of(words_of(w, text="block"), Kind.COUNT, least=1, most=1, bare=True)
+
+
+@rule("TERM", "q:AMOUNT n:NAME 'each'")
+def _each_number(q: tuple[int, int | None], n: tuple[Words, bool]) -> Term:
+    return _number(q, n)
+
+
+@rule("LISTED", "t:BLOCK COMMA? NOT u:BLOCK COMMA?", cost=0.5)
+def _not_the_other(t: Term, u: Term) -> Names:
+    """ "red, not green, goes on blue"."""
+    return Names((t,))
 
 
 @rule("TERM", "q:AMOUNT 'of' l:LISTED")
@@ -303,12 +325,13 @@ def _from_right(o: Word) -> Term | None:
     return term_of(words_of(o, text=f"stack {number - 1} from right")) if number > 0 else None
 
 
-@rule("PLACE", "THE? TABLE INPLACE? p:PLACE", "THE? TABLE 'in' p:PLACE", "THE? BOTTOMOF p:PLACE")
+@rule("PLACE", "THE? TABLE INPLACE? p:PLACE", "THE? TABLE 'in' p:PLACE")
 def _table_there(p: Term) -> Term:
     return p
 
 
-@rule("ALLPLACES", "w:EVERY PLACENOUN", "w:EVERY PLACENOUNS", "w:PER PLACENOUN")
+@rule("ALLPLACES", "w:EVERY PLACENOUN", "w:EVERY PLACENOUNS")
+@rule("PERPLACE", "w:PER PLACENOUN")
 def _all_places(w: Word) -> Term:
     return term_of(words_of(w, text="stack"), Kind.EVERY)
 
@@ -486,6 +509,13 @@ def _three_colors_of(a: Word, b: Word, c: Word, h: tuple[Word, bool]) -> Names |
     return Names(tuple(term_of(words_of(one, h[0])) for one in (a, b, c)))
 
 
+@rule("LISTED", "THE h:HEAD WHICH BE a:COLOR OR b:COLOR", "THE h:HEAD WHICH BE a:COLOR AND b:COLOR")
+def _either_color(h: tuple[Word, bool], a: Word, b: Word) -> Names | None:
+    if not h[1]:
+        return None
+    return Names(tuple(term_of(words_of(one, h[0])) for one in (a, b)))
+
+
 @rule("LISTED", "THE? n:PLACENOUNS NR? i:INDEX COMMA? AND j:INDEX")
 def _places(n: Word, i: Word, j: Word) -> Names:
     return Names(tuple(term_of(words_of(n, k, text=f"stack {k.means}")) for k in (i, j)))
@@ -506,7 +536,7 @@ def _to_correct(t: Term) -> Names:
     return Names((t,))
 
 
-@rule("CORRECTED", "COMMA? c:CORRECTION COMMA?", "MARK c:CORRECTION COMMA?")
+@rule("CORRECTED", "COMMA? c:CORRECTION COMMA?")
 def _correction(c: Word) -> Word:
     return c
 

@@ -49,15 +49,22 @@ def _in_place(w: Word, l: Names) -> Link | None:
     return Link(words_of(w), UPON if upon else INSIDE, l)
 
 
-@rule("PLAINLINK", "p:ALLPLACES", cost=0.3)
+@rule("PLAINLINK", "p:ALLPLACES", "p:PERPLACE", cost=0.3)
 def _per_place(p: Term) -> Link:
     return Link(p.words, INSIDE, Names((p,)))
 
 
-@rule("PLAINLINK", "w:INPLACE THE s:SIDE END?", "w:INPLACE THE? s:FARSIDE END?", cost=1.2)
-def _at_side(w: Word, s: Word) -> Link:
+@rule("PLAINLINK", "w:INPLACE THE s:SIDE END?", cost=1.0)
+def _at_side(w: Word, s: Word) -> Link | None:
+    if w.text not in ("on", "in", "at"):
+        return None
     place = term_of(words_of(s, text=f"{s.means} stack"))
-    return Link(words_of(w), INSIDE, Names((place,)))
+    return Link(words_of(w), INSIDE, Names((place,)), how="side")
+
+
+@rule("PLAINLINK", "w:CLEAR")
+def _clear(w: Word) -> Link:
+    return Link(words_of(w), how="clear")
 
 
 @rule("PLAINLINK", "w:THERE")
@@ -78,18 +85,24 @@ def _at_bottom(w: Word, p: Term | None = None) -> Link | None:
 def _edge(w: Word, how: str, p: Term | None) -> Link | None:
     if p is not None and not (p.is_place or p.words.text == "it"):
         return None
+    if p is not None and not p.is_place and w.text.startswith(("on", "up")):
+        return None
     return Link(words_of(w), how=how, names=Names((p,)) if p else None)
 
 
-@rule("PLAINLINK", "INPLACE w:SAME PLACENOUN", "INPLACE THE w:SAME PLACENOUN", "w:TOGETHER", "w:TOGETHER INPLACE SAME PLACENOUN",
-      "TOGETHER INPLACE w:A PLACENOUN",
+@rule("SAMEPLACE", "INPLACE THE? w:SAME PLACENOUN", "TOGETHER INPLACE w:A PLACENOUN", "INPLACE w:A 'single' PLACENOUN", "w:TOGETHER", "TOGETHER INPLACE THE? w:SAME PLACENOUN")
+def _same_place(w: Word) -> Word:
+    return w
+
+
+@rule("PLAINLINK", "w:SAMEPLACE",
       "INPLACE THE? w:SAME PLACENOUN AS l:LISTED", "w:TOGETHER 'with' l:LISTED", "INPLACE THE? w:SAME PLACENOUN 'with' l:LISTED")  # fmt: skip
 def _together(w: Word, l: Names | None = None) -> Link:
     return Link(words_of(w), how="same", names=l)
 
 
-@rule("PLAINLINK", "INPLACE w:DIFFERENT PLACENOUNS", "INPLACE w:DIFFERENT PLACENOUN", "w:APART",
-      "INPLACE A? w:DIFFERENT PLACENOUN AS l:LISTED", "INPLACE A? w:DIFFERENT PLACENOUN OFF l:LISTED", "w:APART OFF l:LISTED")  # fmt: skip
+@rule("PLAINLINK", "INPLACE w:DIFFERENT PLACENOUNS", "INPLACE w:DIFFERENT PLACENOUN",
+      "INPLACE A? w:DIFFERENT PLACENOUN AS l:LISTED", "INPLACE A? w:DIFFERENT PLACENOUN OFF l:LISTED")  # fmt: skip
 def _apart(w: Word, l: Names | None = None) -> Link | None:
     if l is None and w.text == "another":
         return None
@@ -159,7 +172,7 @@ def _chain(l: Link, m: tuple[Link, ...]) -> tuple[Link, ...] | None:
     return (l, replace(m[0], chained=chained), *m[1:])
 
 
-@rule("LINKS", "l:LINK COMMA? a:AND m:LINKS", "l:LINK COMMA? b:BUT m:LINKS", "l:LINK COMMA? b:BUT NOT m:LINKS",
+@rule("LINKS", "l:LINK COMMA? a:AND m:LINKS", "l:LINK COMMA? b:BUT m:LINKS",
       "l:LINK COMMA o:LINKS")  # fmt: skip
 def _and(
     l: Link, m: tuple[Link, ...] = (), a: Word | None = None, b: Word | None = None,

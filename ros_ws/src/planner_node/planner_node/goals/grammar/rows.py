@@ -180,6 +180,10 @@ def _leveled(
     ordered = _ordered(where, blocks)
     if ordered is None:
         return None
+    if n and len(n) == 3 and set(where) == {"top", "bottom"} and len(l) == 2:
+        middle = [one for one in n if one.words.text not in {two.words.text for two in ordered}]
+        if len(middle) == 1:
+            ordered = (ordered[0], middle[0], ordered[1])
     if n and {term.words.text for term in n} != {term.words.text for term in ordered}:
         return None
     return row_of(UP, ordered, p)

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from ..terms import Kind, Term
+from .clausal import Verb, relate
 from .lattice import Word
-from .meaning import Again, Change, Clear, Item, Names, Relate, Row
+from .meaning import Again, Change, Item, Link, Mention, Names, Relate, Row
 from .nominal import rule, words_of
 
 # Who wishes
@@ -27,6 +29,7 @@ def _person() -> str:
 
 @rule("FRAME", "WHO WANT SEEING*", "WHO DO WANT SEEING*", "WHO MUST WANT SEEING*", "WHO MUST SEEING+", "WHO MUST MAKESURE SOTHAT?")
 @rule("FRAME", "MODAL YOU", "MODAL YOU MIND", "MODAL YOU MAKESURE SOTHAT?", "MODAL YOU SEEING+", "MODAL YOU MIND MAKESURE SOTHAT?")
+@rule("FRAME", "MIND", "MAKESURE COLON", "PUT SOTHAT", "PUT 'it' LIKE A? UNKNOWN COLON", "THE ORDINAL TOWERNOUN? BE", "PUT? A? HEADINGNOUN 'of'", "THE GOAL")
 @rule("FRAME", "MODAL WHO SEEING*", "YOU MUST", "YOU MAY", "YOU 'to'", "YOU MUST MAKESURE SOTHAT?")
 @rule("FRAME", "MAKESURE SOTHAT?", "MAKESURE 'to'", "PUT MAKESURE SOTHAT")
 @rule("FRAME", "'it' BE GOOD SEEING*", "'it' MUST BE GOOD SEEING*", "GOOD SOTHAT", "WHO BE GOOD SEEING*", "'it' MUST BE GOOD IFNICE YOU?", "'it' MUST BE GOOD IFNICE YOU MAY")
@@ -43,7 +46,7 @@ def _frame(k: Word | None = None) -> bool:
 
 @rule("FRAME", "WHO DO NOT WANT SEEING*", "WHO MUST NOT WANT SEEING*", "WHO NOT WANT SEEING*", "AVOID SOTHAT", "MAKESURE NOT 'to'?", "MAKESURE 'to' NOT",
       "WHO MUST WANT YOU 'to' NOT", "WHO WANT YOU NOT 'to'", "WHO WANT YOU 'to' NOT", "'it' BE NOT PERMITTED SEEING*", "'it' MUST NOT BE SEEING+", "DO NOT LETTING", "YOU MUST NOT", "YOU MAY NOT",
-      "NOT LETTING", "'it' BE GOOD SOTHAT NOT", "'it' BE GOOD NOT 'to'", "DO NOT PUT 'it' SOTHAT", "NEVERMAY", "NOTTIME MUST", "NOTTIME MAY")  # fmt: skip
+      "NOT LETTING", "WHO DO NOT THINK SOTHAT", "WHO DO NOT 'like' SEEING+", "WHO MUST NOT 'like' SEEING*", "'without'", "'it' BE GOOD SOTHAT NOT", "'it' BE GOOD NOT 'to'", "DO NOT PUT 'it' SOTHAT", "NEVERMAY", "NOTTIME MUST", "NOTTIME MAY")  # fmt: skip
 def _frame_denied() -> bool:
     return True
 
@@ -111,28 +114,12 @@ def _more_frames(f: bool, c: Item | tuple[Item, ...]) -> Item | tuple[Item, ...]
 def _under(denied: bool, item: Item) -> Item | None:
     if not denied:
         return item
-    if isinstance(item, Relate) and not item.denied and item.subject is not None:
-        subject = item.subject
-        if subject.denied or any(term.only for term in subject.terms):
-            return None
-        kinds = {term.kind.name for term in subject.terms}
-        if kinds == {"THE"}:
-            return replace(item, denied=True)
-        if len(subject.terms) > 1:
-            return None
-        (term,) = subject.terms
-        none = replace(term, kind=type(term.kind).NO, least=0, most=0, bare=False)
-        if term.kind.name == "COUNT" and (term.least, term.most) == (1, None):
-            return replace(item, subject=Names((none,)))
-        if term.kind.name == "COUNT" and term.most is None:
-            fewer = replace(term, least=0, most=term.least - 1)
-            return replace(item, subject=Names((fewer,)))
-        if term.kind.name == "EVERY" and item.subject is not None and term.words.text == "block":
-            return replace(item, subject=Names((none,)))
+    if not isinstance(item, Relate) or item.denied or item.subject is None:
         return None
-    if isinstance(item, Clear) and not item.denied:
-        return replace(item, denied=True)
-    return None
+    subject = item.subject
+    if subject.denied or any(term.only or term.kind is Kind.NO for term in subject.terms):
+        return None
+    return relate(subject, item.links, Verb(denied=True))
 
 
 @rule("FRAMED", "f:FRAME c:CLAUSE", "f:FRAME c:WISHED", "f:FRAME c:ROW")
@@ -160,7 +147,7 @@ def _to_suffix(c: Item, f: bool = False) -> Item | None:
     return _under(f, c)
 
 
-@rule("SUFFIX", "MUST BE GOOD", "'that' MUST BE GOOD", "'it' MUST BE GOOD", "BE WHATIWANT", "AND WHO MUST BE GOOD", "'that' BE WHATIWANT", "'it' BE", "AND WHO MUST BE UNKNOWN", "BE THE? GOAL", "'that' BE THE? GOAL", "WHO LOVEIT", "WHO MUST BE GOOD", "ANYORDER", "WHO WANT", "WHO THINK", "'that' MUST BE UNKNOWN", "BE MUST", "'if' 'it' BE GOOD", "'that' BE GOOD")
+@rule("SUFFIX", "MUST BE GOOD", "'that' MUST BE GOOD", "'it' MUST BE GOOD", "BE WHATIWANT", "AND WHO MUST BE GOOD", "COMMA AND WHO MUST BE GOOD", "'that' BE WHATIWANT", "'it' BE", "AND WHO MUST BE UNKNOWN", "BE THE? GOAL", "'that' BE THE? GOAL", "WHO LOVEIT", "WHO MUST BE GOOD", "ANYORDER", "WHO WANT", "WHO THINK", "'that' MUST BE UNKNOWN", "BE MUST", "'if' 'it' BE GOOD", "'that' BE GOOD")
 def _suffix() -> str:
     return ""
 
@@ -168,7 +155,7 @@ def _suffix() -> str:
 # What says nothing
 
 
-@rule("IDLE", "FILLEDOUT", "OTHERS DONTCARE", "w:ANYORDER", "'i' DONTCARE OTHERS", "LETSBUILD", "SUFFIX", "KEEPING")
+@rule("IDLE", "FILLEDOUT", "OTHERS DONTCARE", "w:ANYORDER", "'i' DONTCARE OTHERS", "LETSBUILD", "SUFFIX", "KEEPING", "SPREADOUT")
 def _idle(w: Word | None = None) -> str:
     return "idle"
 
@@ -202,6 +189,11 @@ def _again(n: Names) -> Again | None:
 @rule("AGAINSAID", "'nor' MUST n:LISTED", "'neither' MUST n:LISTED", "'nor' MAY n:LISTED", "'neither' MAY n:LISTED", "'nor' DO n:LISTED")
 def _again_denied(n: Names) -> Again | None:
     return None if n.either or n.denied else Again(n, denied=True)
+
+
+@rule("SPREADOUT", "PUT? THE BLOCKSOUT")
+def _spread_out() -> str:
+    return ""
 
 
 # Changes of what is there now
@@ -266,6 +258,16 @@ def _item(c: Item) -> tuple[Item, ...]:
     return (c,)
 
 
+@rule("ITEM", "INSTEADOF LINK COMMA? c:FRAMED", "'not' LINK COMMA 'but' c:FRAMED", cost=0.3)
+def _instead(c: Item) -> tuple[Item, ...]:
+    return (c,)
+
+
+@rule("ITEM", "b:BLOCK FIRST", "b:BLOCK COMMA", "FIRST b:BLOCK", "b:BLOCK", "b:BLOCK 'comes' FIRST", cost=1.0)
+def _mention(b: Term) -> tuple[Item, ...]:
+    return (Mention(b),)
+
+
 @rule("ITEM", "IDLE")
 def _idle_item() -> tuple[Item, ...]:
     return ()
@@ -299,8 +301,10 @@ def _more(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...]:
 @rule("ITEMS", "i:ITEM CORRECTED r:ITEMS", "i:ITEM MARK CORRECTED r:ITEMS", "i:ITEM COMMA? INSTEADOF r:ITEMS", cost=0.2)
 def _replaced(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...] | None:
     """What follows stands for what it was in front of: an "it" in it would not be clear."""
+    if not i or not isinstance(i[0], Relate):
+        return None
     first = r[0][1]
-    if len(first) != 1 or not isinstance(first[0], Relate | Clear | Row):
+    if len(first) != 1 or not isinstance(first[0], Relate | Row):
         return None
     if isinstance(first[0], Relate) and (first[0].subject is None or first[0].denied):
         return None

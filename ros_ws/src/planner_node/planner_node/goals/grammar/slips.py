@@ -1,50 +1,59 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a word with a slip of the finger was meant to be."""
+"""What a word with a slip of the finger may have been meant to be."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import re
+from collections.abc import Iterator
+from functools import lru_cache
 
 from scene_graph import COLORS
 
+#: How many words one may be meant to be.
+_MOST = 4
 
-def mended(word: str, known: Collection[str]) -> str | None:
-    """The one known word that is nearest; None: none is near, or several are as near.
 
-    In three letters two may be exchanged or one doubled; in four or five one may be wrong, and two
-    in more.
+@lru_cache(maxsize=4096)
+def mended(word: str, known: frozenset[str]) -> tuple[str, ...]:
+    """The known words that are nearest; none where none is near, or too many are as near.
+
+    Two letters may be exchanged, or one doubled, in any word, and vowels left out; in four to six
+    letters one may be wrong, and two in more.
     """
     if short := _shortened(word):
-        return short
-    best: list[str] = []
-    limit = least = 1.0 if len(word) < 6 else 2.0
+        return (short,)
+    near: dict[float, set[str]] = {}
+    limit = 0 if len(word) < 4 else 1 if len(word) < 7 else 2
     for other in known:
         if abs(len(other) - len(word)) > 2 or len(other) < 2 or not other.isalpha():
             continue
-        if word[0] != other[0] and sorted(word[:2]) != sorted(other[:2]) and len(word) < 5:
-            continue
-        distance = edits(word, other)
-        if min(len(word), len(other)) < 4 and not _harmless(word, other):
-            continue
-        if min(len(word), len(other)) < 6 and distance > 1:
-            continue
-        if distance < least or (distance == least and distance <= limit and not best):
-            best, least = [other], distance
-        elif distance == least:
-            best.append(other)
-    best = [one for one in best if one in COLORS] or best
-    return best[0] if len(best) == 1 else None
+        if _harmless(word, other):
+            near.setdefault(0.5, set()).add(other)
+        elif len(other) > 3 and word[0] == other[0] and _vowelless(word) == _vowelless(other):
+            near.setdefault(0.8, set()).add(other)
+        elif len(other) > 3 and limit and (distance := edits(word, other)) <= limit:
+            near.setdefault(float(distance), set()).add(other)
+    if not near:
+        return ()
+    best = near[min(near)]
+    best = best & set(COLORS) or best
+    return tuple(sorted(best)) if len(best) <= _MOST else ()
+
+
+def _vowelless(word: str) -> str:
+    return word[0] + re.sub("[aeiou]", "", word[1:])
 
 
 def _harmless(word: str, other: str) -> bool:
-    """Two letters exchanged, or one written twice."""
+    """Two neighbours exchanged, or a letter written twice."""
     if len(word) == len(other):
-        return sorted(word) == sorted(other)
-    longer, shorter = sorted((word, other), key=len, reverse=True)
-    return any(
-        longer[:at] + longer[at + 1 :] == shorter and longer[at] in longer[at - 1 : at]
-        for at in range(1, len(longer))
-    )
+        return other in _exchanged(word)
+    return re.sub(r"(.)\1+", r"\1", word) == re.sub(r"(.)\1+", r"\1", other)
+
+
+def _exchanged(word: str) -> Iterator[str]:
+    for at in range(len(word) - 1):
+        yield word[:at] + word[at + 1] + word[at] + word[at + 2 :]
 
 
 def _shortened(word: str) -> str | None:

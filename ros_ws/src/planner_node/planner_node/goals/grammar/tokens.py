@@ -12,7 +12,7 @@ from scene_graph import COLORS, PREDICATES
 from ...errors import InvalidGoalError
 
 _TOKEN: Final = re.compile(
-    r"(?P<left_out>[:;]-?[)D(](?!\w)|[\"“”‘{}*]|['’](?!\w)|(?<!\w)['’]|(?<![\w.])\d+\)(?=\s)"
+    r"(?P<left_out>[:;]-?[)D(](?!\w)|[\"“”‘*]|['’](?!\w)|(?<!\w)['’]|(?<![\w.])\d+\)(?=\s)"
     r"|(?<=\bmax)\.|(?<=\bmin)\.|(?<=\bno)\.(?=\s*\d)|(?<=\bnr)\.(?=\s*\d))"
     r"|(?P<word>[^\W_](?:\w|-(?=\w)|['’](?=\w))*)"
     r"|(?P<sign>(?<!\w)!(?=\w)|[-=]+>|→|[<>≤≥=]=|[≤≥]|&+|[+=#@])"
