@@ -109,11 +109,13 @@ def _before(l: tuple[Link, ...], s: Names) -> bool:
 
 for _clause, _wished in (("CLAUSE", False), ("WISHED", True)):
 
-    @rule(_clause, "s:LISTED v:VERB l:LINKS", "s:LISTED COMMA? 'it' v:VERB l:LINKS",
-          "THERE v:VERB s:LISTED l:LINKS", "l:LINKS v:VERB s:LISTED", "l:LINKS COMMA? THERE v:VERB s:LISTED",
+    @rule(_clause, "s:LISTED v:VERB l:LINKS", "s:LISTED COMMA? ITORTHEM v:VERB l:LINKS", "s:LISTED COLON ITORTHEM v:VERB l:LINKS",
+          "THERE v:VERB s:LISTED l:LINKS", "THERE v:VERB s:LISTED VERB l:LINKS", "MUST BE s:LISTED v:VERB? l:LINKS", "l:LINKS v:VERB s:LISTED", "l:LINKS COMMA? THERE v:VERB s:LISTED",
           "l:LINKS v:MUSTNOT s:LISTED BE", "s:LISTED COMMA? WHICH v:VERB l:LINKS COMMA?", "MUST s:LISTED v:VERB l:LINKS")  # fmt: skip
     @rule(_clause, "s:LISTED l:LINKS v:VERB", cost=0.4)
-    def _with_verb(s: Names, v: Verb, l: tuple[Link, ...], w: bool = _wished) -> Relate | None:
+    def _with_verb(
+        s: Names, l: tuple[Link, ...], v: Verb | None = None, w: bool = _wished
+    ) -> Relate | None:
         if not _asked(v, s, w) or (_before(l, s) and l[0].denied):
             return None
         return relate(s, l, v)
@@ -163,7 +165,7 @@ for _clause, _wished in (("CLAUSE", False), ("WISHED", True)):
             return None
         return _has_them(s, o, v, replace(p, names=s)) if _asked(v, s, w) else None
 
-    @rule(_clause, "s:LISTED v:VERB? COVERED o:LISTED", "s:LISTED v:VERB? SUPPORTED o:LISTED", "s:LISTED v:VERB CARRY o:LISTED")
+    @rule(_clause, "s:LISTED v:VERB? COVERED o:LISTED", "s:LISTED v:VERB? SUPPORTED o:LISTED", "s:LISTED v:VERB? CARRY o:LISTED")
     def _covered(
         s: Names, o: Names, v: Verb | None = None, w: bool = _wished
     ) -> Relate | None:
@@ -207,9 +209,15 @@ for _clause, _wished in (("CLAUSE", False), ("WISHED", True)):
             return None
         return Relate(t, (Link(words_of(r), r.phrase, s),))
 
+    @rule(_clause, "s:LISTED v:VERB? l:LINKS COMMA? ALLBUT e:LISTED")
+    def _but(
+        s: Names, l: tuple[Link, ...], e: Names, v: Verb | None = None, w: bool = _wished
+    ) -> Relate | None:
+        return relate(but(s, e), l, v) if _asked(v, s, w) and but(s, e) else None
+
     @rule(_clause, "o:ONLY s:LISTED v:VERB? l:LINKS", "s:LISTED v:VERB o:THEONLY l:LINKS",
-          "o:THEONLY l:LINKS v:VERB s:LISTED", "l:LINKS v:VERB? o:ONLY s:LISTED", "THERE v:VERB o:ONLY s:LISTED l:LINKS",
-          "l:LINKS THERE v:VERB o:ONLY s:LISTED",
+          "o:THEONLY l:LINKS v:VERB s:LISTED", "l:LINKS v:VERB? o:ONLY s:LISTED", "THERE v:VERB o:ONLY VERB? s:LISTED l:LINKS",
+          "l:LINKS THERE v:VERB o:ONLY s:LISTED", "l:LINKS COMMA? WHO WANT TOSEE? o:ONLY s:LISTED",
           "s:LISTED o:EXCLUSIVE v:VERB? l:LINKS", "s:LISTED v:VERB? l:LINKS o:EXCLUSIVE")  # fmt: skip
     def _only(
         s: Names, l: tuple[Link, ...], o: Word | str, v: Verb | None = None, w: bool = _wished
@@ -218,11 +226,22 @@ for _clause, _wished in (("CLAUSE", False), ("WISHED", True)):
             return None
         if any(term.is_place for term in s.terms) or not _asked(v, s, w):
             return None
+        if all(term.kind is Kind.COUNT for term in s.terms):
+            return Relate(s, l) if len(s.terms) == 1 else None
         return Relate(replace(s, terms=tuple(replace(one, only=True) for one in s.terms)), l)
 
 
 def _is_place(term: Term) -> bool:
-    return term.is_place or term.words.text in ("it", "stack")
+    return term.is_place or term.words.text == "stack"
+
+
+def but(s: Names, e: Names) -> Names | None:
+    """ "all in stack1 except red" with those that are left out; None: it is not said of all."""
+    if len(s.terms) != 1 or s.terms[0].kind not in (Kind.EVERY, Kind.NO) or s.terms[0].but:
+        return None
+    if any(term.kind not in (Kind.THE, Kind.EVERY) for term in e.terms) or e.denied:
+        return None
+    return Names((replace(s.terms[0], but=e.terms, bare=False),))
 
 
 @rule("MUSTNOT", "w:MUST", "w:MUST NOT?")
@@ -305,14 +324,15 @@ def _bare(s: Names, l: tuple[Link, ...]) -> Relate | None:
     return relate(s, l, bare=True)
 
 
-@rule("CLAUSE", "p:HEADPLACE COLON s:LISTED l:LINKS")
+@rule("CLAUSE", "p:HEADPLACE COLON s:LISTED l:LINKS", "INPLACE p:PLACE COMMA? s:LISTED l:LINKS", "INPLACE p:PLACE COMMA? PUT s:LISTED l:LINKS", "INPLACE p:PLACE COMMA? WHO WANT s:LISTED l:LINKS")
 def _at_place(p: Term, s: Names, l: tuple[Link, ...]) -> Relate | None:
-    if l[0].denied or l[0].names is None or l[0].names.terms[0].is_place:
+    if l[0].denied or l[0].names is None or l[0].names.terms[0].is_place or _before(l, s):
         return None
-    return Relate(s, (Link(p.words, INSIDE, Names((p,))), *l), bare=True)
+    return Relate(s, (Link(p.words, INSIDE, Names((p,))), *l), fronted=True)
 
 
-@rule("CLAUSE", "s:LISTED p:BAREPLACE", "s:LISTED COLON p:BAREPLACE", "p:HEADPLACE COLON s:LISTED", "p:BAREPLACE BE s:LISTED", "p:BAREPLACE n:AMOUNTED")
+@rule("CLAUSE", "s:LISTED p:BAREPLACE", "s:LISTED COLON p:BAREPLACE", "p:BAREPLACE BE s:LISTED", "p:BAREPLACE n:AMOUNTED", "'for' p:ALLPLACES COMMA? s:LISTED", "INPLACE? p:ALLPLACES COMMA s:LISTED")
+@rule("CLAUSE", "p:HEADPLACE COLON s:LISTED", cost=0.4)
 @rule("CLAUSE", "p:BAREPLACE s:LISTED", cost=0.8)
 def _beside_place(p: Term, s: Names | None = None, n: Names | None = None) -> Relate | None:
     s = s or n
@@ -347,7 +367,7 @@ def _links_alone(l: tuple[Link, ...]) -> Relate:
 
 @rule("CLAUSE", "p:PUTS s:LISTED l:LINKS", "p:PUTS s:LISTED BE l:LINKS", "p:PUTS l:LINKS s:LISTED", "p:PUTS l:LINKS COMMA s:LISTED",
       "l:LINKS COMMA? p:PUTS s:LISTED", "p:PUTS s:LISTED COMMA l:LINKS",
-      "l:LINKS COMMA? MUST p:PUTS s:LISTED", "l:LINKS COMMA? p:WANTS s:LISTED", "p:PUTS s:LISTED SOTHAT 'it' VERB l:LINKS", "p:PUTS s:LISTED FLOAT l:LINKS",
+      "l:LINKS COMMA? MUST p:PUTS s:LISTED", "l:LINKS COMMA? p:WANTS s:LISTED", "l:LINKS COMMA? p:WANTS TOSEE s:LISTED", "p:PUTS s:LISTED SOTHAT 'it' VERB l:LINKS", "p:PUTS s:LISTED FLOAT l:LINKS",
       "p:PUTS s:LISTED BE PLACED l:LINKS", "p:PUTS s:LISTED PLACED l:LINKS", "p:PUTS s:LISTED BE e:EDGE")  # fmt: skip
 @rule("CLAUSE", "p:TAKES s:LISTED l:LINKS", cost=0.3)
 def _command(
@@ -389,7 +409,7 @@ def _command_of_it(p: bool, l: tuple[Link, ...]) -> Relate | None:
     return None if p else Relate(None, l)
 
 
-@rule("ITORTHEM", "w:IT", "w:BOTHOF", "w:ALLOF")
+@rule("ITORTHEM", "w:IT", "w:BOTHOF", "w:ALLOF", "w:FLOAT")
 def _it_or_them(w: Word) -> Word:
     return w
 
@@ -459,7 +479,18 @@ def _comes_off(s: Names, o: Link, v: Verb | None = None) -> Item | None:
     return _take_off(s, o)
 
 
-@rule("CLAUSE", "s:LISTED MUST BE? ANYWHEREBUT l:LINK", "PUT s:LISTED ANYWHEREBUT l:LINK", "s:LISTED ANYWHEREBUT l:LINK",
-      "s:LISTED MAY BE ANYWHEREBUT l:LINK")  # fmt: skip
+@rule("CLAUSE", "s:LISTED MUST BE? ANYWHEREBUT l:NOTTHERE", "PUT s:LISTED ANYWHEREBUT l:NOTTHERE", "s:LISTED ANYWHEREBUT l:NOTTHERE",
+      "s:LISTED MAY BE ANYWHEREBUT l:NOTTHERE", "s:LISTED BE ANYWHEREBUT l:NOTTHERE")  # fmt: skip
 def _anywhere_but(s: Names, l: Link) -> Relate | None:
     return None if s.either or l.denied else Relate(s, (replace(l, denied=True),))
+
+
+@rule("NOTTHERE", "l:PLAINLINK", "p:PLACE")
+def _not_there(l: Link | None = None, p: Term | None = None) -> Link | None:
+    return l if p is None else Link(p.words, INSIDE, Names((p,)))
+
+
+@rule("CLAUSE", "PUT s:LISTED l:LINKS COMMA? ALLBUT e:LISTED")
+def _put_but(s: Names, l: tuple[Link, ...], e: Names) -> Relate | None:
+    names = but(s, e)
+    return names and Relate(names, l)

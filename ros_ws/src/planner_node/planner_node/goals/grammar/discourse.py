@@ -43,14 +43,25 @@ class Discourse:
         self._mentioned: Term | None = None
         self._sides = False
 
-    def read(self, items: Iterable[Item]) -> tuple[Said, ...]:
+    def read(self, joined: Iterable[tuple[str, Item]]) -> tuple[Said, ...]:
         """The relations of all items.
 
         Raises:
             InvalidGoalError: it is not clear who is meant, or it cannot be said of them.
         """
-        for item in items:
+        fronted = False
+        for how, item in joined:
+            if how == "but":
+                self._denied = False
             if isinstance(item, Relate):
+                if fronted and item.bare and not any(
+                    term.is_place
+                    for link in item.links
+                    if link.names
+                    for term in link.names.terms
+                ):
+                    raise _unclear_words(item.links[0].words)  # is it in that place as well?
+                fronted = item.fronted
                 self._relate(item)
             elif isinstance(item, Mention):
                 self._mention(item)
@@ -76,6 +87,9 @@ class Discourse:
     def _all_named(self, term: Term) -> list[Term]:
         number = term.exact or (2 if not term.bare else max(2, len(self._named)))
         if len(self._named) != number:
+            if term.exact is not None and term.exact > 2 and not self._named:
+                block = replace(term.words, text="block")
+                return [replace(term, words=block, bare=False)]
             raise unclear(term)
         return list(self._named.values())
 
@@ -223,6 +237,9 @@ class Discourse:
         if how == "side":
             if any(self._is_it(term) for term in (item.subject.terms if item.subject else ())):
                 raise _unclear_words(written)
+            middle = link.names is not None and link.names.terms[0].words.side == "middle"
+            if middle and not all(term.several for term in subjects):
+                raise _unclear_words(written)  # of a tower, or of the places?
             self._sides = True
         if how in ("top", "bottom"):
             self._edge(subjects, link, denied)
@@ -493,7 +510,7 @@ class Discourse:
         counted = before is not None and before.kind is Kind.COUNT and before.most == before.least
         if subject.kind is Kind.COUNT and subject.bare:
             if before is None or before.kind is not Kind.COUNT or before.others:
-                if not object_.is_place or subject.least == subject.most:
+                if not object_.is_place:
                     raise unclear(subject)
                 return replace(subject, bare=False)  # "at most two per stack"
             return replace(subject, words=before.words, bare=False)

@@ -10,7 +10,7 @@ from typing import Final
 
 from scene_graph import COLORS, PREDICATES, SHAPES, Phrase
 
-from .lexicon import NO_SLIPS, entries
+from .lexicon import MORE_COLORS, NO_SLIPS, entries
 from .slips import mended
 from .tokens import Token
 
@@ -45,7 +45,7 @@ def _index(phrases: tuple[tuple[tuple[str, ...], Phrase], ...]) -> _Index:
     index: _Index = {}
     for kind, words, means in entries():
         index.setdefault(words[0], []).append((kind, words, means, None))
-    for color in COLORS:
+    for color in (*COLORS, *MORE_COLORS):
         index.setdefault(color, []).append(("COLOR", (color,), color, None))
     for words, phrase in phrases:
         index.setdefault(words[0], []).append(("RELATION", words, " ".join(words), phrase))
@@ -62,7 +62,7 @@ def lattice_of(
     index = _index(tuple(PREDICATES.phrases.items()))
     known = {word for listed in index.values() for _, words, _, _ in listed for word in words}
     known |= set(literals) | set(SHAPES)
-    right = frozenset(known - NO_SLIPS)
+    right = frozenset(known)
     costs: list[float] = []
     words: list[tuple[str, ...]] = []
     for token in tokens:
@@ -83,6 +83,9 @@ def lattice_of(
             if end is None:
                 continue
             cost = sum(costs[start:end])
+            if kind == "FILLER" and entry[:2] == ("if", "you") and end < len(words):
+                if words[end][0].isalnum():
+                    continue  # "if you can not put red on blue, …"
             if kind == "FILLER":
                 skips.append((end, cost + _LEFT_OUT))
                 continue

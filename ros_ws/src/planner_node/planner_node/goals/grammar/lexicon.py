@@ -22,7 +22,7 @@ FILLER: please; kindly; hey; hi; hello; robot; ok; okay; thanks; thx; thank you;
  if possible; if you would; if you like; if you don't mind; if you do not mind; if you could; would you;
  will you; could you; can you; when you can; when you have time; when you get a chance; in advance;
  for a moment; for now; somewhere; simply put; like so; as follows; as well please;
- literally; definitely; absolutely; totally; finally; lastly; firstly; secondly; thirdly; afterwards; after that; next ,; next :; always; at all times;
+ literally; definitely; absolutely; totally; finally; lastly; firstly; secondly; thirdly; afterwards; after that; next ,; next :; in that order; in this order; at last; my dear; sweetheart; monsieur; strictly; neither more nor less; no more no less; no more and no less; no more nor less; and that's it; and that's all; always; at all times;
  in the end; at the end; in any case; anyway; after all; by the way; at once; immediately now;
  right now; right away; good morning; good afternoon; good evening; good day; morning; evening; bro; dude;
  mate; buddy; pal; boss; folks; guys; team; everyone; sweetie; darling; honey; love; yo; mister; madam;
@@ -71,7 +71,7 @@ ELSE: else
 OTHER: other; others; remaining; rest; remainder; leftover; left over
 IT: it; this; that; this one; that one; him; her; this thing; that thing; this block; that block; the same; the latter; the former one; itself
 BOTHOF: both; they; them; these; those; both of them; the two; the two of them; these two; those two; the pair; the both; themselves; both blocks; the two blocks
-ALLOF: all three=3; all four=4; all five=5; all two=2; the three of them=3; the four of them=4; all of these; all of those
+ALLOF: all three=3; all four=4; all five=5; all three of them=3; all four of them=4; all five of them=5; all two=2; the three of them=3; the four of them=4; all of these; all of those
 WHICH: which; who; that
 EACHOTHER: each other; one another; eachother
 NOUN: block; object; thing; piece; item; brick; part; element; thingy; klotz; stone; toy; guy; unit; specimen; component; bit; figure; shape; body; solid
@@ -88,7 +88,7 @@ NR: number; no; nr; num
 SIDE: left; leftmost=left; middle; center=middle; centre=middle; central=middle; right; rightmost=right; left-hand=left; right-hand=right; lefthand=left; righthand=right; left-most=left; right-most=right; left hand=left; right hand=right; far left=left; far right=right; middlemost=middle; outer left=left; outer right=right; extreme left=left; extreme right=right; left most=left; right most=right; far-left=left; far-right=right
 TABLE: table; floor; ground; tabletop; desk; surface; table top
 BE: is; are; be; being; been; stays; stay; stands; stand; standing; sits; sit; sitting; rests; resting; rest; lies; lie; lying; goes; go; going; comes; come; coming; belongs; belong; remains; remain; ends up; end up; ended up; ending up; winds up; wind up; perch; reside; resides; residing; live; lives; hang out; appear; appears; end; happen; finish; finishes; finish up; finishes up; land; lands; situate; wander; wanders; move; moves; hop; hops; jump; jumps; climb; climbs; 's; head; heads; travel; travels; follows; follow; at rest; wait; waits; looks best; looks good; looks nice; fits; gets; get
-PLACED: placed; put; moved; stacked; located; positioned; set; found; to be found; kept; seated; sat; stood; laid; perched; transferred; brought; relocated; shifted; arranged; built; piled; rested; situated; deposited; installed; delivered; returned; carried; seen; left; dropped; shown; located
+PLACED: placed; put; moved; stacked; located; positioned; set; found; to be found; kept; seated; sat; stood; laid; perched; transferred; brought; relocated; shifted; arranged; built; piled; rested; situated; deposited; installed; delivered; returned; carried; seen; dropped; shown
 FLOAT: both; all; each; all three; all four; all five; all together; both of them; all of them
 PAST: was; were; had been; used to be; has been; have been; had; got
 MUST: should; shall; must; will; would; ought to; has to; have to; needs to; need to; had to; is to; are to; had better; wants to; want to; would like to; likes to; is supposed to; are supposed to; is meant to; are meant to; gotta; is required to; are required to; gets to; deserves to; loves to; would love to; to; must to; should to; better; is going to; are going to; is due to; wishes to; has got to; have got to
@@ -99,9 +99,9 @@ THERE: there; here
 PUT: put; place; move; set; get; bring; lay; drop; leave; keep; shift; push; slide; transfer; arrange; build; balance; sit; make; let; have; relocate; stick; add; pop; plop; plonk; chuck; dump; shove; hoist; distribute; rearrange; spread; organize; organise; reorganize; create; form; construct; assemble; give; give me; give us; show; show me; load; deposit; carry; stack; pile; pile up; rest; position; locate; stash; park; install; mount; throw; toss; deliver; hand; station; situate; insert; send; pass; haul; haul over; carry over; bring over; move over; take; stand; gather; collect; group; assign; put down; set down; lay down; drop off; situate; return; lean; nestle; plant; place down; get me; make me; hold; seat; perch; keep hold of; position down; transport; settle; dispatch; re-stack; restack; stow; line up; tuck; fit; squeeze; wedge in; lob; whack; bung; slap; slot in; superimpose; hop; flip; roll; house; store; lodge; leave me; bring me; find me; layer; raise; lower; tidy; sort; clump; unite; combine; join
 PUTTING: putting; placing; moving; stacking; setting; getting; bringing; laying; having; keeping; leaving; dropping; building; making; seeing; letting; positioning; sticking; popping; piling; arranging; leaving
 TAKE: take; grab; lift; pick; pick up; fetch; grasp; get; use; find; locate; go get; lift up; look for; seize; get hold of; search for; remove; reach for; choose; select
-OFF: off; off of; from; out of; away from; from on top of; from off; from the top of; off the top of; from out of; out from; from in; from inside; down from; up off; up from; from above; from atop
+OFF: off; off of; from; out of; from on top of; from off; from the top of; off the top of; from out of; out from; from in; from inside; down from; up off; up from; from above; from atop
 CARRY: supports; carries; holds; support; carry; hold; bears; bear; carrying; supporting; holding; bearing
-CLEARS: clear; empty; vacate; uncover; free up; clear off; clear out; clean off; free; clear up; empty out; evacuate; expose; bare; unload; clean; clear away; strip; clean out; clean up; tidy up; unblock; unbury
+CLEARS: clear; empty; vacate; uncover; free up; clear off; clear out; clean off; free; clear up; empty out; evacuate; expose; bare; clean; clear away; strip; clean out; clean up; tidy up; unblock; unbury
 CLEAR: clear; empty; free; bare; vacant; unoccupied; uncovered; clean; exposed; unobstructed; clear on top; free on top; empty on top; deserted; uncluttered; blank; visible from above; open on top; bare on top; topless; unburdened; untouched on top; with nothing on top; with nothing on it; with nothing in it
 HAS: has; have; contains; contain; holds; hold; containing; includes; include; having; houses; house; gets; get; with; receives; receive; accommodates; accommodate; hosts; host; consists of; consist of; is made of; is made up of; comprises; comprise; carries; carry; stores; store; features; feature; needs; need; wants; takes; take; keeps
 COVERED: covered by; topped by; covered with; topped with; crowned by; crowned with; occupied by
@@ -110,7 +110,8 @@ SUPPORTED: supported by; carried by; held by; held up by
 FIRST: first; to start with; to begin with; initially; at first
 LASTLY: last; finally; lastly
 BEFORE: before; after; until; once; when; whenever; unless; if; otherwise; provided; because; else; during; in case; as soon as; as long as; instead; rather; sooner; later
-CORRECTION: no wait; no sorry; wait no; wait; sorry; no; oops; i mean; i meant; or rather; rather; correction; make that; no make that; scratch that; actually make that; no i meant; sorry i meant; wait i meant; oops i meant; no i mean; sorry i mean; sorry no; i mean to say; that is to say; no no; er no; uh no; um no; no wait a second; hang on; hold on; no actually; actually no; no not that; my mistake; my bad; wait sorry; oh no; oops no; nope; strike that; forget that; no hang on; no hold on; whoops; better; or better; even better; or actually; wait actually; no rather; oops sorry; oh wait; no oops
+CORRECTION: no wait; no sorry; wait no; i mean; i meant; or rather; make that; no make that; scratch that; actually make that; no i meant; sorry i meant; wait i meant; oops i meant; no i mean; sorry i mean; sorry no; i mean to say; that is to say; no no; er no; uh no; um no; no wait a second; hang on; hold on; no actually; actually no; no not that; my mistake; my bad; wait sorry; oh no; oops no; strike that; forget that; no hang on; no hold on; or better; even better; or actually; wait actually; no rather; oops sorry; oh wait; no oops
+CORRECTION1: wait; sorry; no; oops; rather; correction; nope; whoops; better; actually
 INSTEADOF: instead of; rather than; as opposed to; in place of; in lieu of
 INSTEAD: instead
 DIRECTLY: directly; immediately; straight; right; exactly; just; squarely
@@ -127,10 +128,10 @@ UPWARDS: from bottom to top; bottom to top; from the bottom up; from the bottom 
 DOWNWARDS: from top to bottom; top to bottom; from the top down; from the top to the bottom; top down; top first; from top down; from the top; starting from the top; starting at the top; from above; highest first; downwards; beginning at the top; in order from top to bottom; going down; from high to low; read from the top; downward; top-down; top-to-bottom; counting from the top; ordered from top to bottom
 RIGHTWARDS: from left to right; left to right; from the left to the right; from the left; starting from the left; left first; going right; in order from left to right; ordered from left to right; left-to-right
 LEFTWARDS: from right to left; right to left; from the right to the left; from the right; starting from the right; right first; going left; in order from right to left; right-to-left
-ATTOP: on top; at the top; at top; on the top; at the very top; on the very top; topmost; on the tippy top; at the tippy top; uppermost; at the peak; at the summit; as the top; as its top; highest; on the very top of it all; on top of it all; up top; right on top; right at the top; at the tip; on very top; tops it; on the summit
-TOPOF: at the top of; the top of; at the very top of; top of; the very top of; at top of; on the very top of; the peak of; the summit of; the upper end of
+ATTOP: on top; at the top; at top; on the top; at the very top; on the very top; on the tippy top; at the tippy top; at the peak; as the top; as its top; on the very top of it all; on top of it all; up top; right on top; right at the top; at the tip; on very top; tops it
+TOPOF: at the top of; the top of; at the very top of; top of; the very top of; at top of; on the very top of; the peak of
 INMIDDLE: in the middle; in between; in middle; middle; between them; between the two; as the middle; in the center; in the centre; sandwiched between; sandwiched in between
-ATBOTTOM: at the bottom; on the bottom; at bottom; at the very bottom; on the very bottom; at the base; bottommost; as the base; at base; lowest; as its base; as the bottom; as a base; underneath it all; right at the bottom; on bottom; at the foot; as the foundation; as foundation; below everything
+ATBOTTOM: at the bottom; on the bottom; at bottom; at the very bottom; on the very bottom; at the base; as the base; at base; as its base; as the bottom; as a base; underneath it all; right at the bottom; on bottom; at the foot; as the foundation; as foundation; below everything
 BOTTOMOF: at the bottom of; the bottom of; on the bottom of; at the very bottom of; bottom of; the very bottom of; at the base of; the base of; on the very bottom of; at bottom of; the foot of; the foundation of; at the foot of; base of
 TOPMOST: top; topmost; uppermost; highest; upper; top-most
 LOWEST: bottom; lowest; bottommost; lower; base; bottom-most; undermost
@@ -180,7 +181,7 @@ LIKE: like
 ADJ: big; nice; high; tall; little; small; single; new; beautiful; great; huge; pretty
 NEXTUP: next; above that; on that; on top of that; on it; above it; after that; over that; on top of it; next up
 ABOVETHAT: on that; above that; on top of that; over that
-INTHATORDER: in that order; in this order; in order; in the order given
+THANKSFOR: thank you for; thanks for
 TOSEE: to see; to have; to get
 NOTTOUCH: touching
 HEIGHT: height; tallness
@@ -209,14 +210,7 @@ END: end; side; edge; hand side; part
 """  # noqa: E501
 
 #: Words that are right as they are, and none of those above with a slip.
-_def _written_out(words: str) -> str:
-    for short, long in (("don't", "do not"), ("n't", " not"), ("'m", " am"), ("'d", " would"),
-                        ("'ll", " will"), ("'re", " are"), ("'s", " 's")):  # fmt: skip
-        words = words.replace(short, long)
-    return words
-
-
-NO_SLIPS: Final = """
+_NO_SLIPS: Final = """
  tin bed glue line back ink pine bin can there here half mean base peak saw see said rod tail
  tall table cable able lose love loves like alike black slack snack track stick sticks think thing
  bake rake lake hand land sand sound round ground found bound mound brown grown green greens grin
@@ -236,6 +230,13 @@ NO_SLIPS: Final = """
 """
 
 
+def _written_out(words: str) -> str:
+    for short, long in (("don't", "do not"), ("n't", " not"), ("'m", " am"), ("'d", " would"),
+                        ("'ll", " will"), ("'re", " are"), ("'s", " 's")):  # fmt: skip
+        words = words.replace(short, long)
+    return words
+
+
 def entries() -> Iterator[tuple[str, tuple[str, ...], str]]:
     """Kind, words, and what they stand for, of every entry."""
     for line in _WORDS.replace("\n ", " ").strip().splitlines():
@@ -246,4 +247,11 @@ def entries() -> Iterator[tuple[str, tuple[str, ...], str]]:
                 yield kind, tuple(_written_out(said).split()), meant or said
 
 
+#: Colours beside those of :data:`scene_graph.COLORS`.
+MORE_COLORS: Final = frozenset({
+    "white", "gold", "golden", "silver", "tan", "teal", "lime", "navy", "beige", "maroon",
+    "olive", "turquoise", "indigo", "amber", "coral", "crimson", "scarlet", "rose", "ruby",
+    "plum", "lilac", "aqua", "azure", "bronze", "copper", "cream", "peach", "salmon", "violet",
+    "gray", "grey",
+})  # fmt: skip
 NO_SLIPS: Final = frozenset(_NO_SLIPS.split())

@@ -53,7 +53,7 @@ class Relate:
         subject: None: who was spoken of before.
         bare: it has no verb of its own, so that what was denied before may be meant to go on.
         about: the object is who is spoken of next: "red has blue on it".
-        taken: the subject was only taken so far: "take red".
+        fronted: the place is told first: "in stack 0, red on blue".
     """
 
     subject: Names | None
@@ -61,6 +61,7 @@ class Relate:
     denied: bool = False
     bare: bool = False
     about: bool = False
+    fronted: bool = False
 
 
 @dataclass(frozen=True)

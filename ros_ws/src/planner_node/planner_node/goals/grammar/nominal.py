@@ -56,11 +56,6 @@ def _colored(a: Word, h: tuple[Word, bool]) -> tuple[Words, bool]:
     return words_of(*sorted((a, h[0]), key=lambda word: word.offset)), h[1]
 
 
-@rule("NAME", "a:COLOR WHICH BE A h:HEAD", "a:COLOR 'one' WHICH BE A h:HEAD")
-def _shaped(a: Word, h: tuple[Word, bool]) -> tuple[Words, bool]:
-    return words_of(a, h[0]), h[1]
-
-
 @rule("NAME", "a:COLOR b:SHAPE h:NOUN")
 def _doubly(a: Word, b: Word, h: Word) -> tuple[Words, bool]:
     return words_of(a, b, h), False
@@ -171,11 +166,16 @@ def _nothing(w: Word) -> Term:
     return term_of(words_of(w, text="block"), Kind.NO, least=0, most=0)
 
 
-@rule("TERM", "q:AMOUNT n:NAME", "q:AMOUNT 'of' THE n:NAME", "q:AMOUNT 'of' THE k:NUMBER n:NAME")
+@rule("TERM", "q:AMOUNT n:NAME", "q:SEVERAL 'of' THE n:NAME", "q:SEVERAL 'of' THE k:NUMBER n:NAME")
 def _number(q: tuple[int, int | None], n: tuple[Words, bool], k: Word | None = None) -> Term:
     if q[1] == 0:
         return term_of(n[0], Kind.NO, least=0, most=0)
     return term_of(n[0], Kind.COUNT, least=q[0], most=q[1])
+
+
+@rule("SEVERAL", "q:AMOUNT")
+def _not_one(q: tuple[int, int | None]) -> tuple[int, int | None] | None:
+    return None if q == (1, 1) else q  # one at least, or one only?
 
 
 @rule("TERM", "q:AMOUNT", "q:AMOUNT 'of' 'them'", cost=0.6)
@@ -516,9 +516,11 @@ def _either_color(h: tuple[Word, bool], a: Word, b: Word) -> Names | None:
     return Names(tuple(term_of(words_of(one, h[0])) for one in (a, b)))
 
 
-@rule("LISTED", "THE? n:PLACENOUNS NR? i:INDEX COMMA? AND j:INDEX")
-def _places(n: Word, i: Word, j: Word) -> Names:
-    return Names(tuple(term_of(words_of(n, k, text=f"stack {k.means}")) for k in (i, j)))
+@rule("LISTED", "THE? n:PLACENOUNS NR? i:INDEX COMMA? AND j:INDEX",
+      "THE? n:PLACENOUN i:INDEX o:OR j:INDEX", "THE? n:PLACENOUN i:INDEX AND j:INDEX")  # fmt: skip
+def _places(n: Word, i: Word, j: Word, o: Word | None = None) -> Names:
+    places = tuple(term_of(words_of(n, k, text=f"stack {k.means}")) for k in (i, j))
+    return Names(places, either=o is not None)
 
 
 @rule("LISTED", "THE? i:SIDE AND THE? j:SIDE n:PLACENOUN", "THE? i:SIDE AND THE? j:SIDE n:PLACENOUNS")
@@ -526,7 +528,7 @@ def _sides(i: Word, j: Word, n: Word) -> Names:
     return Names(tuple(term_of(words_of(k, text=f"{k.means} stack")) for k in (i, j)))
 
 
-@rule("LISTED", "l:LISTED1 CORRECTED m:TERM", cost=0.3)
+@rule("LISTED", "l:LISTED1 CORRECTED m:TERM", cost=0.8)
 def _corrected(l: Names, m: Term) -> Names:
     return Names((m,))
 
@@ -536,9 +538,10 @@ def _to_correct(t: Term) -> Names:
     return Names((t,))
 
 
-@rule("CORRECTED", "COMMA? c:CORRECTION COMMA?")
-def _correction(c: Word) -> Word:
-    return c
+@rule("CORRECTED", "COMMA* CORRECTION COMMA?", "COMMA* CORRECTION COMMA? CORRECTION COMMA?", "COMMA* CORRECTION1 COMMA? CORRECTION COMMA?")
+@rule("CORRECTED", "COMMA* CORRECTION1 COMMA?", cost=0.6)
+def _correction() -> str:
+    return "no"
 
 
 def _joined(terms: tuple[Term, ...]) -> Names | None:

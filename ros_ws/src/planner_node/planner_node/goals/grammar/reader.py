@@ -37,7 +37,7 @@ def readings_of(text: str) -> list[tuple[Said, ...]]:
         try:
             if any(how == "or" for how, _ in joined):
                 raise InvalidGoalError("one of two is asked for; say which")
-            items = [item for _, listed in joined for item in listed]
+            items = [(how, item) for how, listed in joined for item in listed]
             said = Discourse().read(items)
         except PlannerError as caught:
             error = error or caught

@@ -54,12 +54,19 @@ def _per_place(p: Term) -> Link:
     return Link(p.words, INSIDE, Names((p,)))
 
 
-@rule("PLAINLINK", "w:INPLACE THE s:SIDE END?", cost=1.0)
-def _at_side(w: Word, s: Word) -> Link | None:
-    if w.text not in ("on", "in", "at"):
+@rule("PLAINLINK", "w:INPLACE t:THE s:SIDE END?", cost=1.0)
+def _at_side(w: Word, t: Word, s: Word) -> Link | None:
+    if w.text not in ("on", "in", "at") or t.text != "the" or s.text.startswith("far"):
         return None
     place = term_of(words_of(s, text=f"{s.means} stack"))
     return Link(words_of(w), INSIDE, Names((place,)), how="side")
+
+
+@rule("PLAINLINK", "INPLACE THE PLACENOUN r:RELATION l:LISTED", "INPLACE THE PLACENOUN WHICH BE r:RELATION l:LISTED", "INPLACE A PLACENOUN r:RELATION l:LISTED")
+def _in_place_beside(r: Word, l: Names) -> Link | None:
+    if r.phrase is None or r.phrase.predicate.name != BESIDE:
+        return None
+    return Link(words_of(r), r.phrase, l)
 
 
 @rule("PLAINLINK", "w:CLEAR")
@@ -151,7 +158,12 @@ def _denied(l: Link) -> Link | None:
     return replace(l, denied=True)
 
 
-@rule("LINK", "o:OFFLINK", cost=0.3)
+@rule("LINKS", "m:LINK COMMA? INSTEADOF l:LINK", cost=0.3)
+def _instead_of(l: Link, m: Link) -> tuple[Link, ...]:
+    return (m,)
+
+
+@rule("LINK", "o:OFFLINK", cost=0.8)
 def _stays_off(o: Link) -> Link | None:
     return o if o.words.text in ("off", "off of", "out of") else None
 
@@ -207,7 +219,7 @@ def _neither_of(w: Word, l: Term, m: Term) -> tuple[Link, ...]:
     return (Link(words_of(w), w.phrase, Names((l, m)), denied=True),)
 
 
-@rule("LINKS", "l:LINK CORRECTED m:LINK", "l:LINK COMMA? INSTEADOF m:LINK", cost=0.3)
+@rule("LINKS", "l:LINK CORRECTED m:LINK", cost=0.5)
 def _corrected(l: Link, m: Link) -> tuple[Link, ...]:
     return (m,)
 

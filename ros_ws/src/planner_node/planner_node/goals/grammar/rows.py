@@ -48,7 +48,7 @@ def _order_sep() -> str:
     return ","
 
 
-@rule("HEADING", "PUT? A? NUMBER? TOWERNOUN HEADINGMORE?", "PUT? THE TOWERNOUN HEADINGMORE?", "PUT? THE ROWNOUN HEADINGMORE?", "PUT? A? ROWNOUN HEADINGMORE?", "PUT")
+@rule("HEADING", "PUT? A? NUMBER? TOWERNOUN HEADINGMORE?", "PUT? THE TOWERNOUN HEADINGMORE?", "PUT? THE ROWNOUN HEADINGMORE?", "THE ROWNOUN 'of' THE TOWERNOUN HEADINGMORE?", "PUT PERSONAL A TOWERNOUN HEADINGMORE?", "WHO WANT A? TOWERNOUN HEADINGMORE?", "PUT? A? ROWNOUN HEADINGMORE?", "PUT")
 def _heading() -> str:
     return "heading"
 
@@ -79,7 +79,7 @@ def _in_place(p: Term) -> Term:
       "PUT n:INORDER PAUSE? d:ORDER", "p:INPLACEOF BE PAUSE? d:ORDER PAUSE? n:INORDER",
       "p:INPLACEOF MUST BE PAUSE? d:ORDER PAUSE? n:INORDER", "d:ORDER p:INPLACEOF MUST BE n:INORDER",
       "d:ORDER COMMA p:INPLACEOF MUST BE n:INORDER", "p:INPLACEOF MUST HAS COMMA? d:ORDER COMMA? n:INORDER",
-      "n:INORDER MUST BE d:ORDER", "THE ROWNOUN p:INPLACEOF d:ORDER MUST BE n:INORDER", "THE ROWNOUN d:ORDER MUST? BE n:INORDER")  # fmt: skip
+      "n:INORDER MUST BE d:ORDER", "THE ROWNOUN p:INPLACEOF d:ORDER MUST BE n:INORDER", "THE ROWNOUN d:ORDER MUST? BE n:INORDER", "HEADING COMMA? d:ORDER COMMA? HEADINGMORE n:INORDER")  # fmt: skip
 def _row(
     d: tuple[str, bool], n: tuple[Term, ...], p: Term | None = None
 ) -> Row | None:
@@ -112,6 +112,18 @@ def row_of(predicate: str, names: tuple[Term, ...], place: Term | None = None) -
       "b:BLOCK v:LEVELVERB? 'the' w:LOWEST", "THE w:LOWEST ONE? v:LEVELVERB b:BLOCK", "PUT b:BLOCK w:FIRST")  # fmt: skip
 def _bottom(b: Term, w: Word, v: str | None = None) -> tuple[str, Term]:
     return "bottom", b
+
+
+@rule("LEVELAT", "b:BLOCK LEVELVERB? BOTTOMOF p:PLACE", "PUT b:BLOCK BOTTOMOF p:PLACE", "BOTTOMOF p:PLACE COMMA? LEVELVERB? b:BLOCK", "b:BLOCK INPLACE p:PLACE ATBOTTOM", "b:BLOCK ATBOTTOM INPLACE p:PLACE")
+def _bottom_of(b: Term, p: Term) -> tuple[Term, Term]:
+    return b, p
+
+
+@rule("ROW", "a:LEVELAT LEVELSEP l:LEVELS", "a:LEVELAT LEVELSEP b:LEVEL")
+def _row_from(
+    a: tuple[Term, Term], l: tuple[tuple[str, Term], ...] = (), b: tuple[str, Term] | None = None
+) -> Row | None:
+    return _leveled((("bottom", a[0]), *(l or (b,))), a[1])  # type: ignore[arg-type]
 
 
 @rule("LEVEL", "b:BLOCK v:LEVELVERB? w:ATTOP", "w:ATTOP COMMA? v:LEVELVERB? b:BLOCK", "w:ATTOP COMMA? I WANT b:BLOCK", "PUT? b:BLOCK w:ATTOP", "w:ATTOP PUT b:BLOCK",
@@ -156,12 +168,12 @@ def _level_sep() -> str:
       "p:INPLACEOF COMMA? HEADING PAUSE? l:LEVELS", "l:LEVELS COMMA? p:INPLACEOF", "p:INPLACEOF MUST? HAS l:LEVELS",
       "HEADING COMMA? 'with' l:LEVELS")  # fmt: skip
 @rule("ROW", "HEADING n:INORDER COMMA? 'with' l:LEVELS", "HEADING n:INORDER COMMA? l:LEVELS", "HEADING p:INPLACEOF PAUSE? n:INORDER COMMA? 'with' l:LEVELS")
-@rule("ROW", "'with' l:LEVELS COMMA? HEADING n:INORDER", "'with' e:LEVEL COMMA? HEADING n:INORDER x:INTHATORDER?", "HEADING n:INORDER COMMA? 'with' e:LEVEL",
-      "HEADING n:INORDER x:INTHATORDER COMMA? 'with' e:LEVEL", "HEADING n:INORDER COMMA? e:LEVEL",
+@rule("ROW", "'with' l:LEVELS COMMA? HEADING n:INORDER", "'with' e:LEVEL COMMA? HEADING n:INORDER", "HEADING n:INORDER COMMA? 'with' e:LEVEL",
+      "HEADING n:INORDER COMMA? e:LEVEL",
       "HEADING p:INPLACEOF PAUSE? n:INORDER COMMA? 'with' e:LEVEL", "HEADING n:INORDER p:INPLACEOF COMMA? 'with' e:LEVEL")  # fmt: skip
 def _leveled(
     l: tuple[tuple[str, Term], ...] = (), p: Term | None = None, n: tuple[Term, ...] = (),
-    e: tuple[str, Term] | None = None, x: str | None = None,
+    e: tuple[str, Term] | None = None
 ) -> Row | None:  # fmt: skip
     if e is not None:
         # In the order that was told, from the end that was named.

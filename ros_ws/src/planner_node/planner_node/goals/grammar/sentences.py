@@ -8,7 +8,7 @@ from dataclasses import replace
 from ..terms import Kind, Term
 from .clausal import Verb, relate
 from .lattice import Word
-from .meaning import Again, Change, Item, Link, Mention, Names, Relate, Row
+from .meaning import Again, Change, Item, Mention, Names, Relate, Row
 from .nominal import rule, words_of
 
 # Who wishes
@@ -29,7 +29,7 @@ def _person() -> str:
 
 @rule("FRAME", "WHO WANT SEEING*", "WHO DO WANT SEEING*", "WHO MUST WANT SEEING*", "WHO MUST SEEING+", "WHO MUST MAKESURE SOTHAT?")
 @rule("FRAME", "MODAL YOU", "MODAL YOU MIND", "MODAL YOU MAKESURE SOTHAT?", "MODAL YOU SEEING+", "MODAL YOU MIND MAKESURE SOTHAT?")
-@rule("FRAME", "MIND", "MAKESURE COLON", "PUT SOTHAT", "PUT 'it' LIKE A? UNKNOWN COLON", "THE ORDINAL TOWERNOUN? BE", "PUT? A? HEADINGNOUN 'of'", "THE GOAL")
+@rule("FRAME", "MIND", "MAKESURE COLON", "THANKSFOR", "MODAL WHO WANT SEEING*", "PUT 'it' LIKE A? UNKNOWN COLON", "THE ORDINAL TOWERNOUN? BE", "PUT? A? HEADINGNOUN 'of'", "THE GOAL")
 @rule("FRAME", "MODAL WHO SEEING*", "YOU MUST", "YOU MAY", "YOU 'to'", "YOU MUST MAKESURE SOTHAT?")
 @rule("FRAME", "MAKESURE SOTHAT?", "MAKESURE 'to'", "PUT MAKESURE SOTHAT")
 @rule("FRAME", "'it' BE GOOD SEEING*", "'it' MUST BE GOOD SEEING*", "GOOD SOTHAT", "WHO BE GOOD SEEING*", "'it' MUST BE GOOD IFNICE YOU?", "'it' MUST BE GOOD IFNICE YOU MAY")
@@ -86,7 +86,7 @@ def _wherein() -> str:
     return "where"
 
 
-@rule("GIVENS", "GIVENFOR THE? UNKNOWN+", "GIVENFOR DISCUSSED", "GIVENFOR THE? UNKNOWN? STEP", "GIVENFOR THE? FILLABLE* UNKNOWN* STEP NUMBER?", cost=0.8)
+@rule("GIVENS", "GIVENFOR THE? UNKNOWN+", "GIVENFOR DISCUSSED", "GIVENFOR THE? UNKNOWN? STEP", "GIVENFOR THE? FILLABLE* UNKNOWN* STEP NUMBER?", "GIVENFOR THE? FILLABLE+ UNKNOWN+", cost=0.8)
 def _givens() -> str:
     return "given"
 
@@ -278,7 +278,12 @@ def _preamble() -> str:
     return ""
 
 
-@rule("SEP", "COMMA", "AND", "COMMA AND", "BUT", "COMMA BUT", "STOP", "STOP AND", "STOP BUT", "STOP STOP", "BUT AND", "MARK MARK", "MARK COMMA", "COMMA COMMA", "AND COMMA", "AND SOTHAT", "COMMA SOTHAT", "COMMA 'with'", "'with'", "COMMA 'where'", "STOP AND COMMA")
+@rule("SEP", "BUT", "COMMA BUT", "STOP BUT", "BUT AND")
+def _but_sep() -> str:
+    return "but"
+
+
+@rule("SEP", "COMMA", "AND", "COMMA AND", "STOP", "STOP AND", "STOP STOP", "MARK MARK", "MARK COMMA", "COMMA COMMA", "AND COMMA", "COMMA AND COMMA", "AND SOTHAT", "COMMA SOTHAT", "COMMA 'with'", "'with'", "COMMA 'where'", "STOP AND COMMA")
 def _sep() -> str:
     return ""
 
@@ -292,13 +297,13 @@ def _last(i: tuple[Item, ...]) -> tuple[Joined, ...]:
     return (("", i),)
 
 
-@rule("ITEMS", "i:ITEM SEP r:ITEMS")
+@rule("ITEMS", "i:ITEM s:SEP r:ITEMS")
 @rule("ITEMS", "i:ITEM r:ITEMS", cost=1.5)
-def _more(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...]:
-    return (("", i), *r)
+def _more(i: tuple[Item, ...], r: tuple[Joined, ...], s: str = "") -> tuple[Joined, ...]:
+    return (("", i), (s or r[0][0], r[0][1]), *r[1:])
 
 
-@rule("ITEMS", "i:ITEM CORRECTED r:ITEMS", "i:ITEM MARK CORRECTED r:ITEMS", "i:ITEM COMMA? INSTEADOF r:ITEMS", cost=0.2)
+@rule("ITEMS", "i:ITEM MARK? CORRECTED MARK? r:ITEMS", cost=0.2)
 def _replaced(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...] | None:
     """What follows stands for what it was in front of: an "it" in it would not be clear."""
     if not i or not isinstance(i[0], Relate):
@@ -306,9 +311,18 @@ def _replaced(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...] 
     first = r[0][1]
     if len(first) != 1 or not isinstance(first[0], Relate | Row):
         return None
-    if isinstance(first[0], Relate) and (first[0].subject is None or first[0].denied):
+    if isinstance(first[0], Relate) and first[0].denied:
         return None
+    if isinstance(first[0], Relate) and first[0].subject is None:
+        return ((r[0][0], (replace(first[0], subject=i[0].subject),)), *r[1:])
     return r
+
+
+@rule("ITEMS", "i:ITEM COMMA? INSTEADOF c:CLAUSE STOP*", cost=0.2)
+def _rather_than(i: tuple[Item, ...], c: Item) -> tuple[Joined, ...] | None:
+    if not i or not isinstance(i[0], Relate):
+        return None
+    return (("", i),)
 
 
 @rule("ITEMS", "i:ITEM COMMA? OR r:ITEMS")

@@ -12,7 +12,7 @@ from scene_graph import COLORS, PREDICATES
 from ...errors import InvalidGoalError
 
 _TOKEN: Final = re.compile(
-    r"(?P<left_out>[:;]-?[)D(](?!\w)|[\"“”‘*]|['’](?!\w)|(?<!\w)['’]|(?<![\w.])\d+\)(?=\s)"
+    r"(?P<left_out>[:;]-?[)D(](?!\w)|[\"“”‘*]|['’](?!\w)|(?<!\w)['’]|(?<![\w.])(?:\d+|[a-e])\)(?=\s)"
     r"|(?<=\bmax)\.|(?<=\bmin)\.|(?<=\bno)\.(?=\s*\d)|(?<=\bnr)\.(?=\s*\d))"
     r"|(?P<word>[^\W_](?:\w|-(?=\w)|['’](?=\w))*)"
     r"|(?P<sign>(?<!\w)!(?=\w)|[-=]+>|→|[<>≤≥=]=|[≤≥]|&+|[+=#@])"
@@ -31,7 +31,7 @@ _SHORT: Final = {
     "u": "you", "n": "and", "nd": "and", "adn": "and", "w": "with", "w/": "with", "ur": "your",
     "gonna": "going to", "wanna": "want to", "gotta": "must", "gimme": "give me", "im": "i am",
     "ive": "i have", "id": "i would", "lets": "let us", "mit": "with", "und": "and", "auf": "on",
-    "dont": "do not", "doesnt": "does not", "didnt": "did not", "cant": "can not",
+    "dont": "do not", "dnt": "do not", "doesnt": "does not", "didnt": "did not", "cant": "can not",
     "cannot": "can not", "wont": "will not", "isnt": "is not", "arent": "are not",
     "shouldnt": "should not", "mustnt": "must not", "wouldnt": "would not", "neednt": "need not",
     "shan't": "shall not", "can't": "can not", "won't": "will not", "ain't": "is not",
