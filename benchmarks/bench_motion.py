@@ -18,6 +18,7 @@ from typing import Final
 
 import numpy as np
 import pybullet_data
+from motion_in_graph import PERIOD, MotionInGraph
 from motion_peers import Peers
 from motion_scenes import BASES, random_heights, random_moves, scene
 from numpy.typing import NDArray
@@ -268,6 +269,37 @@ def broken_limits(planner: MotionPlanner, motion: Motion) -> list[str]:
     return [name for name, holds in kept.items() if not holds]
 
 
+def graph_rows(planner: MotionPlanner, count: int) -> list[Row]:
+    """What a running node takes longer, whose arm tells its joints all the while."""
+    rows = list[Row]()
+    with MotionInGraph() as running:
+        for moves, *_ in LENGTHS:
+            running.seconds(f"first of {moves}", *_asked(random_problem(moves, 0)))
+            ours, ratios = list[float](), list[float]()
+            for seed in tqdm(range(FIRST_SEED, FIRST_SEED + count), desc=f"{moves}, in the graph"):
+                problem = random_problem(moves, seed)
+                seconds = running.seconds(f"{moves} from {seed}", *_asked(problem))
+                running.quiet = True
+                alone = solve(planner, problem)
+                running.quiet = False
+                if alone is not None:
+                    ours.append(seconds)
+                    ratios.append(seconds / alone.seconds)
+            name = f"{moves} moves" if moves > 1 else "1 move"
+            rows += [
+                Row(name, "time to find the motion in the running graph, median",
+                    statistics.median(ours), "s", len(ours), (min(ours), max(ours)),
+                    note=f"joint states {1.0 / PERIOD:.0f} times a second"),
+                Row(name, "of this to the time alone, median", statistics.median(ratios), "",
+                    len(ratios), (min(ratios), max(ratios)), "<= 1.3", note="in turns"),
+            ]  # fmt: skip
+    return rows
+
+
+def _asked(problem: Problem) -> tuple[SceneGraph, list[Move]]:
+    return problem.graph, problem.moves
+
+
 def prepared_planner(lengths: Sequence[int]) -> MotionPlanner:
     """With its problems built, as a node that has been running has them."""
     urdf = Path(pybullet_data.getDataPath()) / "franka_panda" / "panda.urdf"
@@ -293,7 +325,7 @@ def main() -> None:
     try:
         planner = prepared_planner([moves for moves, *_ in LENGTHS])
         rows = time_rows(planner, peers, count) + duration_rows(planner, peers, count)
-        rows += correction_rows(planner, count)
+        rows += correction_rows(planner, count) + graph_rows(planner, count)
     finally:
         if peers is not None:
             peers.close()

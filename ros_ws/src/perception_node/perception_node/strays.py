@@ -15,7 +15,7 @@ import numpy as np
 
 from scene_graph import UNKNOWN, SceneGraph, SceneObject, object_name
 
-from .blocks.measure import measure_blocks
+from .blocks.measure import BlockSurface, measure_blocks
 from .errors import PerceptionError
 from .light import color_names
 from .names import mean_colors
@@ -26,6 +26,9 @@ from .segment.rgbd import MIN_PIXELS, find_in_rgbd
 
 #: Over the table, what is higher is worth a closer look [m].
 _HIGH: Final = 0.01
+#: No block is wider or higher [m], and none hangs higher over the table than this [m].
+_LARGEST: Final = 0.09
+_HANGS: Final = 0.015
 
 
 def find_strays(
@@ -68,8 +71,15 @@ def find_strays(
             position_world=(*surface.position, 0.5 * (surface.low + surface.high)),
         )
         for surface, color in zip(surfaces, colors)
-        if color != UNKNOWN
+        if color != UNKNOWN and _is_like_a_block(surface, strip.floor)
     )
+
+
+def _is_like_a_block(surface: BlockSurface, floor: float) -> bool:
+    """Whether it is as large as a block can be and on the table: a wall or a tray is none."""
+    height = surface.high - surface.low
+    on_the_table = abs(surface.low - floor) < _HANGS
+    return surface.upright and on_the_table and max(height, *surface.widths) < _LARGEST
 
 
 def with_strays(graph: SceneGraph, strays: Sequence[SceneObject]) -> SceneGraph:
