@@ -26,6 +26,44 @@ class ParsedRelation:
     negated: bool = False
 
 
+@dataclass(frozen=True)
+class Changed:
+    """A change of how the blocks stand now.
+
+    Attributes:
+        kind: ``swap``, ``keep``, ``turn`` (upside down), ``same`` (all stays), ``shift``.
+        terms: of whom; empty for everything.
+        steps: of a shift, to the right.
+    """
+
+    kind: str
+    words: Words
+    terms: tuple[Term, ...] = ()
+    steps: int = 0
+
+
+Said = ParsedRelation | Changed
+
+
+@dataclass(frozen=True)
+class Parsed:
+    """What a text says.
+
+    Attributes:
+        readings: the ways to read it that are as good as one another; mostly it is one.
+    """
+
+    readings: tuple[tuple[Said, ...], ...]
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        """All names and numbers of the first reading."""
+        found: list[Term] = []
+        for item in self.readings[0]:
+            found += item.terms if isinstance(item, Changed) else (item.subject, item.object)
+        return tuple(found)
+
+
 def counted(subjects: Sequence[Term]) -> list[Term] | None:
     """ "two of red, blue and green" as one number of these; None: it is not clear who they are."""
     if not any(term.listed for term in subjects):

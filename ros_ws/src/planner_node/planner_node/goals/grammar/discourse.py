@@ -11,13 +11,12 @@ from scene_graph import ABOVE, BESIDE, LEFT, PREDICATES, UP, Phrase
 
 from ...errors import InvalidGoalError
 from ..objections import check_places, unclear, untold
-from ..parsed import ParsedRelation, in_one_place, none_but
+from ..parsed import Changed, ParsedRelation, Said, in_one_place, none_but
 from ..terms import Described, Kind, Term, Words, is_any_place
-from .meaning import Again, Change, Changed, Item, Link, Mention, Names, Relate, Row, Take
+from .meaning import Again, Change, Item, Link, Mention, Names, Relate, Row, Take
 from .nominal import INSIDE, UPON
 
 _BESIDE = Phrase(PREDICATES[BESIDE])
-Said = ParsedRelation | Changed
 
 
 class Discourse:
@@ -76,11 +75,29 @@ class Discourse:
         self._put_down()
         if self._mentioned is not None:
             raise untold(self._mentioned)
+        self._check_now()
         if self._sides:
             for said in self.relations:
                 if isinstance(said, ParsedRelation) and said.phrase.predicate.name == LEFT:
                     raise unclear(said.subject)  # on the left of all, or of something?
         return tuple(dict.fromkeys(self.relations))
+
+    def _check_now(self) -> None:
+        """What is told by how the blocks stand now is not told of what becomes of them before."""
+        for number, said in enumerate(self.relations):
+            if isinstance(said, Changed):
+                if said.kind not in ("keep", "same") and len(self.relations) > 1:
+                    raise _unclear_words(said.words)
+                continue
+            for term in (said.subject, said.object):
+                now = term.described
+                if now is not None and now.how not in ("below", "other") and number:
+                    before = self.relations[0]
+                    if not isinstance(before, ParsedRelation) or term not in (
+                        before.subject,
+                        before.object,
+                    ):
+                        raise _unclear_words(term.words)
 
     # Who is meant
 

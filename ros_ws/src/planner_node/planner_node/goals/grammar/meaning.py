@@ -112,18 +112,4 @@ class Change:
     steps: int = 0
 
 
-@dataclass(frozen=True)
-class Changed:
-    """A change whose names are known.
-
-    Attributes:
-        terms: of whom; empty for everything.
-    """
-
-    kind: str
-    words: Words
-    terms: tuple[Term, ...] = ()
-    steps: int = 0
-
-
 Item = Relate | Mention | Row | Take | Again | Change

@@ -7,7 +7,8 @@ from typing import Final
 
 from ...errors import InvalidGoalError, PlannerError
 from . import clausal, relational, rows, sentences  # noqa: F401  their rules
-from .discourse import Discourse, Said
+from ..parsed import Parsed, Said
+from .discourse import Discourse
 from .lattice import lattice_of
 from .nominal import GRAMMAR
 from .tokens import tokens_of
@@ -19,8 +20,8 @@ _AS_GOOD: Final = 0.45
 _TOLERATED: Final = 0.9
 
 
-def readings_of(text: str) -> list[tuple[Said, ...]]:
-    """The readings of a text that are as good as the best; one where it is clear.
+def parse_goal(text: str) -> Parsed:
+    """Reads a goal; of several readings all that are as good as the best.
 
     Raises:
         InvalidGoalError: there is none, or the best do not make sense.
@@ -47,4 +48,4 @@ def readings_of(text: str) -> list[tuple[Said, ...]]:
             readings.setdefault(said, cost)
     if not readings:
         raise error or InvalidGoalError("it is not understood")
-    return list(readings)
+    return Parsed(tuple(readings))
