@@ -19,8 +19,8 @@ All vocabulary is in ``language`` and ``wordings``.
 from .contradictions import check_contradictions, find_contradiction
 from .goal import Count, Goal, ResolveGoal, complete_goal, goal_of_picture
 from .names import resolve_name
-from .parse import parse_goal
-from .parsed import ParsedRelation
+from .grammar.reader import parse_goal
+from .parsed import Parsed, ParsedRelation
 from .resolve import resolve_goal
 from .terms import Kind, Words
 

@@ -143,10 +143,15 @@ for _clause, _wished in (("CLAUSE", False), ("WISHED", True)):
     @rule(_clause, "s:LISTED v:VERB? HAS o:LISTED ITSELFIN?", "s:LISTED v:VERB? HAS o:AMOUNTED ITSELFIN?",
           "s:LISTED v:VERB o:AMOUNTED", "s:LISTED v:VERB? HAS o:LISTED x:EXCLUSIVE ITSELFIN?",
           "s:LISTED v:VERB? HAS x:ONLY o:LISTED ITSELFIN?", "THE? HEIGHT 'of' s:LISTED v:VERB? o:AMOUNTED",
-          "s:LISTED v:VERB HIGHER MORETHAN? o:AMOUNTED")  # fmt: skip
+          "s:LISTED v:VERB? HIGHER AS k:NUMBER NOUNS?")  # fmt: skip
     def _has(
-        s: Names, o: Names, v: Verb | None = None, x: Word | None = None, w: bool = _wished
-    ) -> Relate | None:
+        s: Names, o: Names | None = None, v: Verb | None = None, x: Word | None = None,
+        w: bool = _wished, k: Word | None = None,
+    ) -> Relate | None:  # fmt: skip
+        if o is None:
+            assert k is not None
+            more = term_of(Words("block", 0, 0), Kind.COUNT, least=int(k.means) + 1)
+            o = Names((more,))
         if not all(_is_place(term) for term in s.terms) or s.either:
             return None
         if any(term.is_place for term in o.terms) or not _asked(v, s, w):
@@ -154,7 +159,7 @@ for _clause, _wished in (("CLAUSE", False), ("WISHED", True)):
         if x is not None:
             if any(term.kind is not Kind.THE for term in o.terms):
                 return None
-            o = replace(o, terms=tuple(replace(term, only=True) for term in o.terms))
+            o = _only_of(o, x)
         return _has_them(s, o, v, Link(s.terms[0].words, INSIDE, s))
 
     @rule(_clause, "s:LISTED v:VERB? HAS o:LISTED p:ITSPHRASE")
@@ -164,6 +169,15 @@ for _clause, _wished in (("CLAUSE", False), ("WISHED", True)):
         if any(term.is_place for term in (*s.terms, *o.terms)) or s.either:
             return None
         return _has_them(s, o, v, replace(p, names=s)) if _asked(v, s, w) else None
+
+    @rule(_clause, "s:LISTED v:VERB? HAS o:LISTED t:ATTOP", "s:LISTED v:VERB? HAS o:LISTED t:ATBOTTOM")
+    def _has_at_end(
+        s: Names, o: Names, t: Word, v: Verb | None = None, w: bool = _wished
+    ) -> Relate | None:
+        if not all(_is_place(term) for term in s.terms) or len(s.terms) > 1 or (v and v.denied):
+            return None
+        how = "bottom" if "b" in t.text.split()[-1] else "top"
+        return Relate(o, (Link(words_of(t), how=how, names=s),)) if _asked(v, s, w) else None
 
     @rule(_clause, "s:LISTED v:VERB? COVERED o:LISTED", "s:LISTED v:VERB? SUPPORTED o:LISTED", "s:LISTED v:VERB? CARRY o:LISTED")
     def _covered(
@@ -213,7 +227,8 @@ for _clause, _wished in (("CLAUSE", False), ("WISHED", True)):
     def _but(
         s: Names, l: tuple[Link, ...], e: Names, v: Verb | None = None, w: bool = _wished
     ) -> Relate | None:
-        return relate(but(s, e), l, v) if _asked(v, s, w) and but(s, e) else None
+        names = but(s, e)
+        return relate(names, l, v) if names and _asked(v, s, w) else None
 
     @rule(_clause, "o:ONLY s:LISTED v:VERB? l:LINKS", "s:LISTED v:VERB o:THEONLY l:LINKS",
           "o:THEONLY l:LINKS v:VERB s:LISTED", "l:LINKS v:VERB? o:ONLY s:LISTED", "THERE v:VERB o:ONLY VERB? s:LISTED l:LINKS",
@@ -228,7 +243,15 @@ for _clause, _wished in (("CLAUSE", False), ("WISHED", True)):
             return None
         if all(term.kind is Kind.COUNT for term in s.terms):
             return Relate(s, l) if len(s.terms) == 1 else None
-        return Relate(replace(s, terms=tuple(replace(one, only=True) for one in s.terms)), l)
+        return Relate(_only_of(s, o), l)
+
+
+def _only_of(s: Names, x: Word | str) -> Names:
+    """Them and nothing else."""
+    if isinstance(x, Word) and x.text in ("nothing", "other", "others"):
+        nothing = term_of(words_of(x, text="block"), Kind.NO, least=0, most=0, others=True)
+        return Names((*s.terms, nothing))
+    return replace(s, terms=tuple(replace(one, only=True) for one in s.terms))
 
 
 def _is_place(term: Term) -> bool:
@@ -241,6 +264,8 @@ def but(s: Names, e: Names) -> Names | None:
         return None
     if any(term.kind not in (Kind.THE, Kind.EVERY) for term in e.terms) or e.denied:
         return None
+    if s.terms[0].kind is Kind.NO and all(term.kind is Kind.THE for term in e.terms):
+        return _only_of(e, "only")
     return Names((replace(s.terms[0], but=e.terms, bare=False),))
 
 
@@ -255,6 +280,8 @@ def _has_them(s: Names, o: Names, v: Verb | None, l: Link) -> Relate | None:
     if s.denied:
         s, denied = replace(s, denied=False), not denied
     if len(s.terms) == 1 and s.terms[0].kind is Kind.NO:
+        if any(term.kind is Kind.COUNT and not term.least for term in o.terms):
+            return None  # "no stack has at most two"
         every = replace(s.terms[0], kind=Kind.EVERY, least=1, most=None)
         s, denied = Names((every,)), not denied
     l = replace(l, names=s)
@@ -316,11 +343,13 @@ def _exclusive(w: Word) -> Word:
 
 @rule("CLAUSE", "s:LISTED l:LINKS", "s:LISTED COLON l:LINKS", "s:LISTED COMMA? 'it' l:LINKS", "s:LISTED COMMA? SOTHAT 'it' VERB l:LINKS")
 @rule("CLAUSE", "l:LINKS s:LISTED", "l:LINKS COMMA s:LISTED", cost=0.4)
-@rule("CLAUSE", "s:LISTED STOP l:LINKS", cost=1.0)
+@rule("CLAUSE", "s:LISTED MARK l:LINKS", cost=1.0)
 @rule("WISHED", "s:LISTED l:LINKS")
 def _bare(s: Names, l: tuple[Link, ...]) -> Relate | None:
     if _before(l, s) and l[0].denied:
         return None
+    if l[0].denied and any(term.kind is Kind.EVERY for term in s.terms):
+        return None  # "all blocks not in stack1": of whom something else is said?
     return relate(s, l, bare=True)
 
 
@@ -353,7 +382,7 @@ def _heading_place(p: Term) -> Term | None:
     return None if 0 < p.words.end - p.words.offset < 4 and p.words.text[0] == "s" else p
 
 
-@rule("BAREPLACE", "w:SIDE", cost=0.5)
+@rule("HEADPLACE", "w:SIDE", cost=0.5)
 def _outermost(w: Word) -> Term | None:
     if "most" not in w.text:
         return None
@@ -387,7 +416,9 @@ def _command_of_that(p: bool, s: Names, l: tuple[Link, ...]) -> Relate | None:
 
 @rule("CLAUSE", "NOT s:LISTED l:LINKS", cost=0.3)
 def _not_so(s: Names, l: tuple[Link, ...]) -> Relate | None:
-    return relate(s, l, Verb(denied=True)) if len(l) == 1 and not _before(l, s) else None
+    if len(l) > 1 or _before(l, s) or any(term.kind is not Kind.THE for term in s.terms):
+        return None
+    return relate(s, l, Verb(denied=True))
 
 
 @rule("CLAUSE", "HEADING 'with' s:LISTED", "HEADING OFOF s:LISTED", "HEADING 'out' 'of' s:LISTED", cost=0.5)

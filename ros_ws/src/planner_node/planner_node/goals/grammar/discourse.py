@@ -41,6 +41,8 @@ class Discourse:
         #: A name of which nothing is said yet.
         self._mentioned: Term | None = None
         self._sides = False
+        #: How many relations there were before the sentence.
+        self._before = 0
 
     def read(self, joined: Iterable[tuple[str, Item]]) -> tuple[Said, ...]:
         """The relations of all items.
@@ -49,9 +51,18 @@ class Discourse:
             InvalidGoalError: it is not clear who is meant, or it cannot be said of them.
         """
         fronted = False
+        row = False
         for how, item in joined:
-            if how == "but":
+            if how in ("but", "."):
                 self._denied = False
+            if how == ".":
+                self._before = len(self.relations)
+            mentioned = self._mentioned
+            if mentioned is not None and how == "with":
+                raise unclear(mentioned)
+            if row and isinstance(item, Relate) and item.subject is None and how != ".":
+                raise _unclear_words(item.links[0].words)
+            row = isinstance(item, Row)
             if isinstance(item, Relate):
                 if fronted and item.bare and not any(
                     term.is_place
@@ -72,6 +83,8 @@ class Discourse:
                 self._again(item)
             else:
                 self._change(item)
+            if mentioned is not None and self._mentioned is mentioned:
+                raise untold(mentioned)
         self._put_down()
         if self._mentioned is not None:
             raise untold(self._mentioned)
@@ -117,7 +130,7 @@ class Discourse:
         """A name itself; for "it" the one that it can only stand for."""
         if not self._is_it(term):
             return term
-        if self._mentioned is not None:
+        if self._mentioned is not None and not self._mentioned.is_place:
             mentioned, self._mentioned = self._mentioned, None
             return mentioned
         if phrase is not None and phrase.needs_place and self.object and self.object.is_place:
@@ -150,7 +163,7 @@ class Discourse:
                 found += self._all_named(term)
             elif term.bare and term.kind is Kind.EVERY and self._named:
                 number = len(self._named)
-                if number < 2:
+                if number < 2 or 0 < self._before == len(self.relations):
                     raise unclear(term)
                 found += list(self._named.values())
             else:
@@ -269,9 +282,13 @@ class Discourse:
             blocks = [*subjects, *others]
             if not others and len(blocks) == 1 and blocks[0].kind is Kind.THE and self.object:
                 blocks.append(self.object)  # "red under blue, in the same stack"
-            found = in_one_place(blocks, how == "same", denied)
-            if found is None:
-                raise _unclear_words(written)
+            pairs = [[*subjects, other] for other in others] if denied and others else [blocks]
+            found = []
+            for pair in pairs:
+                one = in_one_place(pair, how == "same", denied)
+                if one is None:
+                    raise _unclear_words(written)
+                found += one
             self.relations += found
             self._name(*blocks)
             self.subjects, self.object = blocks[:1], others[-1] if others else None
@@ -349,6 +366,8 @@ class Discourse:
         place = self.object
         if link.names is not None:
             (place,) = self._who(link.names, INSIDE)
+        elif self._mentioned is place:
+            self._mentioned = None
         if place is None or not place.is_place or place.is_every_place or denied:
             raise _unclear_words(link.words)
         if len(subjects) != 1 or subjects[0].kind is not Kind.THE or subjects[0].is_place:
@@ -374,7 +393,7 @@ class Discourse:
             for term in other.names.terms
             if term.is_place
         ]
-        if denied or any(term.kind is not Kind.THE for term in subjects):
+        if denied or any(term.kind is not Kind.THE or term.is_place for term in subjects):
             raise _unclear_words(link.words)
         if places:
             found = none_but(subjects, INSIDE, False, places[0])
@@ -416,6 +435,8 @@ class Discourse:
             raise unclear(self._mentioned)
         self._mentioned = item.term
         self.subjects, self.object, self.link = [item.term], None, None
+        if item.term.is_place:
+            self.subjects, self.object = [], item.term
         self._denied = False
 
     def _row(self, item: Row) -> None:
@@ -497,6 +518,8 @@ class Discourse:
                 none_of = replace(one, kind=Kind.NO, least=0, most=0, bare=False)
                 subjects, denied = [none_of], False
         if len(subjects) > 1 and subjects[-1].kind is Kind.NO and subjects[-1].others:
+            if set(self._named) - {term.words.text for term in subjects}:
+                raise unclear(subjects[-1])  # is who else was named meant as well?
             subjects = [replace(subject, only=True) for subject in subjects[:-1]]
         if only := [subject for subject in subjects if subject.only]:
             self._only(subjects, phrase, denied, object_, only[0])
@@ -512,8 +535,6 @@ class Discourse:
                     raise unclear(term)
                 self._name(term)
             check_places(subject, phrase, object_, written.text)
-            if subject.is_place and phrase == UPON and not phrase.inverse:
-                raise unclear(subject)
             meaning = phrase
             together = subject.several or len(subjects) > 1
             if together and object_.is_place and phrase == UPON and not denied:

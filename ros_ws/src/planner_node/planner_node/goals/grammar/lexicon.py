@@ -43,7 +43,6 @@ BUT: but; yet; however; though; although; but also; even though
 OR: or; and/or
 NOR: nor
 COMMA: ,; -; :
-STOP: .; ?; ,; -
 MARK: .; ?
 COLON: :; -; ,; .
 NOT: not; never; under no circumstances; at no time; by no means; in no case; on no account; no longer; not ever; nowhere
@@ -124,7 +123,7 @@ SHARE: share; shares; share together; sharing
 NEIGHBORS: neighbours; neighbors; adjacent; side by side; neighboring; neighbouring; next door
 TOWER: tower; pile; stack; column; heap; pillar; totem; skyscraper
 ROWNOUN: row; line; sequence; order; series; lineup
-UPWARDS: from bottom to top; bottom to top; from the bottom up; from the bottom to the top; bottom up; bottom first; from bottom up; from the bottom; starting from the bottom; starting at the bottom; from below; lowest first; upwards; beginning at the bottom; in order from bottom to top; from the ground up; from base to top; base to top; starting at the base; going up; from low to high; starting from below; read from the bottom; upward; bottom-up; bottom-to-top; from the base up; bottom to the top; counting from the bottom; ordered from bottom to top
+UPWARDS: from bottom to top; bottom to top; from the bottom up; from the bottom to the top; bottom up; bottom first; from bottom up; from the bottom; starting from the bottom; starting at the bottom; lowest first; upwards; beginning at the bottom; in order from bottom to top; from the ground up; from base to top; base to top; starting at the base; going up; from low to high; read from the bottom; upward; bottom-up; bottom-to-top; from the base up; bottom to the top; counting from the bottom; ordered from bottom to top
 DOWNWARDS: from top to bottom; top to bottom; from the top down; from the top to the bottom; top down; top first; from top down; from the top; starting from the top; starting at the top; from above; highest first; downwards; beginning at the top; in order from top to bottom; going down; from high to low; read from the top; downward; top-down; top-to-bottom; counting from the top; ordered from top to bottom
 RIGHTWARDS: from left to right; left to right; from the left to the right; from the left; starting from the left; left first; going right; in order from left to right; ordered from left to right; left-to-right
 LEFTWARDS: from right to left; right to left; from the right to the left; from the right; starting from the right; right first; going left; in order from right to left; right-to-left
@@ -142,6 +141,8 @@ YOU: you
 WANT: want; wants; need; needs; would like; would love; would prefer; prefer; prefers; would want; would need; wish; wishes; ask for; am asking for; are asking for; asks for; asked for; request; requests; requested; require; requires; required; demand; demands; expect; expects; wanna; am needing; am looking for; are looking for; would appreciate; would rather have; am after; are after; would ask for; propose; suggest; proposes; suggests; would suggest; would propose; hope for; would be happy with; desire; desires; fancy; insist on; insists on; insist; insists; will have; would have; am wanting; would have liked; should like; should love; could use; could do with; must have; 'd; order; orders; am hoping for; hope; hopes; have to have; need to have; want to have; want to see; need to see; would like to see; would love to see; would like to have; would love to have; intend; intend to have; become; am trying to get; are aiming for; am aiming for; vote for; choose; opt for
 THINK: think; guess; suppose; believe; reckon; figure; feel; imagine; would say; say; should think; would think; was thinking; were thinking; have decided; decided; was wondering; know what i want; would guess; am thinking
 LOVEIT: would love it; would like it; would prefer it; would appreciate it; would be grateful; would be happy; would be glad; would be delighted; would be pleased; should be most obliged; would be obliged; would be much obliged; should be grateful; would be nice; would be great; would be so happy; would be thankful; would be very grateful; would be really happy; would be most grateful; would be super happy; would be thrilled; would be perfect
+ASK: ask; trouble; bother; beg; request; invite; urge; instruct; tell
+PERSONNOUN: boss; team; professor; doctor; friend; colleague; students; student; kids; children; class; customer; client; wife; husband; teacher; chef; director; manager; supervisor; mother; father; son; daughter; people; guests; folks; captain; nurse; surgeon; user; operator; examiner; audience; everyone; pupils; lab; experiment; task; drawing; recipe; specification; contract
 MAKESURE: see whether you can; try to get; make sure; ensure; see to it; see; take care; arrange; arrange things; arrange it; make it so; guarantee; confirm; verify; make certain; see about; check; be sure; arrange the blocks; arrange everything; rearrange the blocks; rearrange things; rearrange everything; reorganize the blocks; reorganise the blocks; move things around; move the blocks around; move the blocks; move blocks around; shuffle things around; make it; get it; fix it; set it up; set things up; set everything up; sort it out; organize it; organize things; organise things; do it; manage; distribute the blocks; place the blocks; put the blocks; stack the blocks; spread the blocks; spread the blocks out; spread them; spread them out; order the blocks; try; see if you can; try and see; remember; note; be careful; have it; help me; show me how; proceed; spread things; spread things out; leave things; leave it; get things; get everything; configure the blocks; configure things; reposition the blocks; tidy up
 SOTHAT: so that; so; that; until; such that; in such a way that; in a way that; as such that; to the point where; so as; till
 GOOD: happy; glad; delighted; grateful; satisfied; pleased; thrilled; done; important; necessary; essential; crucial; vital; required; needed; imperative; desirable; desired; best; requested; time; critical; mandatory; preferable; preferred; great; nice; good; lovely; wonderful; perfect; fantastic; awesome; cool; better; super; ideal; splendid; helpful; swell; brilliant; fine; marvelous; marvellous; excellent; amazing; super important; very important; really important; absolutely necessary; paramount; compulsory; hereby requested; fabulous; fab; sweet; neat; dandy; a good idea; a pleasure; a treat; kind; terrific; ace; tops; appreciated; much appreciated
@@ -179,7 +180,8 @@ POSSESSIVE: its; his; her; the
 OUTOF: out
 LIKE: like
 ADJ: big; nice; high; tall; little; small; single; new; beautiful; great; huge; pretty
-NEXTUP: next; above that; on that; on top of that; on it; above it; after that; over that; on top of it; next up
+NEXTUP: next; above that; on that; on top of that; after that; over that; next up
+ONIT: on it; above it; on top of it; over it
 ABOVETHAT: on that; above that; on top of that; over that
 THANKSFOR: thank you for; thanks for
 TOSEE: to see; to have; to get
@@ -194,10 +196,10 @@ PERMITTED: permitted; allowed; acceptable; okay; ok; right; good
 NOTTIME: under no circumstances; at no time; in no case; on no account; by no means
 PLAINUP: on
 IN: in; into; to; inside; at
-ITSELFIN: in it; in there; inside; inside it; on it; there; on top; on top of it; above it; over it
+ITSELFIN: in it; in them; on them; in there; inside; inside it; on it; there; on top; on top of it; above it; over it
 FURTHEST: furthest; farthest; most
 ELSEWHERE: elsewhere; somewhere else; anywhere else; someplace else; away; to another place; to another stack; to a different place; to a different stack; in another stack; in a different stack; in another place; in a different place; on another stack; on a different stack; on another place; on a different place
-ONLY: only; solely; exclusively; just; nothing but
+ONLY: only; solely; exclusively; just
 LETUS: let us; we would better; we had better; shall we; we had better; let me
 MODAL: can; could; would; will; may; might; shall
 MIND: mind; be so kind as to; be so kind and; be so good as to; be so kind to; be kind enough to; be good enough to; be able to; be willing to; manage to; try to; be a dear and; do me a favor and; do me a favour and; do me the favour and; be so nice to; be so nice and; be a darling and; be a sweetheart and; go ahead and; help me; possibly; be so nice as to; care to; trouble yourself to; go and; do it so that

@@ -8,6 +8,7 @@ from typing import Final
 
 from scene_graph import ABOVE, PREDICATES, UP, Phrase
 
+from ..language import PLACE_NOUNS
 from ..terms import Described, Kind, Term, Words
 from .chart import Grammar
 from .lattice import Word
@@ -61,7 +62,7 @@ def _doubly(a: Word, b: Word, h: Word) -> tuple[Words, bool]:
     return words_of(a, b, h), False
 
 
-@rule("NAME", "u:STRANGE+ h:HEAD?", "a:COLOR u:STRANGE+ h:HEAD?", cost=4.0)
+@rule("NAME", "u:STRANGE+ h:HEAD?", "a:COLOR u:STRANGE+ h:HEAD?", "u:STRANGE+ a:COLOR h:HEAD?", cost=4.0)
 def _strange(
     u: tuple[Word, ...], a: Word | None = None, h: tuple[Word, bool] | None = None
 ) -> tuple[Words, bool]:
@@ -203,7 +204,7 @@ def _not_the_other(t: Term, u: Term) -> Names:
     return Names((t,))
 
 
-@rule("TERM", "q:AMOUNT 'of' l:LISTED")
+@rule("TERM", "q:AMOUNT 'of' l:PAIR", "q:AMOUNT 'of' l:SERIES")
 def _of_these(q: tuple[int, int | None], l: Names) -> Term | None:
     if any(one.kind is not Kind.THE for one in l.terms) or q[0] > len(l.terms):
         return None
@@ -216,6 +217,10 @@ def _of_these(q: tuple[int, int | None], l: Names) -> Term | None:
 def _all_but(t: Term, l: Names) -> Term | None:
     if any(one.kind not in (Kind.THE, Kind.EVERY) for one in l.terms):
         return None
+    if t.kind is Kind.NO and any(one.kind is Kind.THE for one in l.terms):
+        if len(l.terms) > 1:
+            return None
+        return replace(l.terms[0], only=True)  # "nothing but red in stack1"
     return replace(t, but=l.terms, bare=False)
 
 
@@ -270,6 +275,19 @@ def _nothing_else(w: Word) -> Term | None:
 # Those that were named before
 
 
+@rule("TERM", "SOMETHING w:OTHER HEAD", "A w:OTHER HEAD", "w:ANOTHER HEAD")
+def _another(w: Word) -> Term:
+    return term_of(words_of(w, text="block"), Kind.COUNT)
+
+
+@rule("TERM", "EVERY? THE? n:NAME WHICH BE NOT a:COLOR", "w:EVERYTHING WHICH BE NOT a:COLOR")
+def _not_colored(a: Word, n: tuple[Words, bool] | None = None, w: Word | None = None) -> Term | None:
+    if n is not None and not n[1]:
+        return None
+    words = n[0] if n else words_of(w, text="block")
+    return term_of(words, Kind.EVERY, but=(term_of(words_of(a), Kind.EVERY),))
+
+
 @rule("TERM", "w:IT")
 def _it(w: Word) -> Term:
     return term_of(words_of(w, text="it"))
@@ -292,7 +310,14 @@ def _all_of_them(w: Word) -> Term:
 
 @rule("PLACE", "THE? n:PLACENOUN NR? k:INDEX", "THE? n:PLACENOUN k:INDEX")
 def _numbered(n: Word, k: Word) -> Term:
-    return term_of(words_of(n, k, text=f"stack {k.means}"))
+    noun = n.text if n.text in PLACE_NOUNS else "stack"
+    return term_of(words_of(n, k, text=f"{noun} {k.means}"))
+
+
+@rule("TERM", "THE? n:PLACENOUN", cost=1.5)
+def _some_place(n: Word) -> Term:
+    """Asked back with the places that there are."""
+    return term_of(words_of(n))
 
 
 @rule("PLACE", "THE? w:NUMBERED")
@@ -477,13 +502,13 @@ def _series(t: Term, r: Names) -> Names | None:
 
 
 @rule("LASTTWO", "t:TERM COMMA? AND u:TERM", "t:TERM COMMA? o:OR u:TERM")
-@rule("LASTTWO", "t:TERM COMMA u:TERM", cost=0.6)
+@rule("LASTTWO", "t:TERM COMMA u:TERM", cost=0.4)
 def _last_two(t: Term, u: Term, o: Word | None = None) -> Names | None:
     joined = _joined((t, u))
     return joined and replace(joined, either=o is not None)
 
 
-@rule("PAIR", "t:TERM COMMA u:TERM", cost=0.6)
+@rule("PAIR", "t:TERM COMMA u:TERM", cost=0.4)
 def _enumerated(t: Term, u: Term) -> Names | None:
     return _joined((t, u))
 
@@ -518,7 +543,9 @@ def _either_color(h: tuple[Word, bool], a: Word, b: Word) -> Names | None:
 
 @rule("LISTED", "THE? n:PLACENOUNS NR? i:INDEX COMMA? AND j:INDEX",
       "THE? n:PLACENOUN i:INDEX o:OR j:INDEX", "THE? n:PLACENOUN i:INDEX AND j:INDEX")  # fmt: skip
-def _places(n: Word, i: Word, j: Word, o: Word | None = None) -> Names:
+def _places(n: Word, i: Word, j: Word, o: Word | None = None) -> Names | None:
+    if n.means == n.text and not j.text.isdigit():
+        return None  # "two in stack 0 and one in stack 1"
     places = tuple(term_of(words_of(n, k, text=f"stack {k.means}")) for k in (i, j))
     return Names(places, either=o is not None)
 
@@ -539,15 +566,15 @@ def _to_correct(t: Term) -> Names:
 
 
 @rule("CORRECTED", "COMMA* CORRECTION COMMA?", "COMMA* CORRECTION COMMA? CORRECTION COMMA?", "COMMA* CORRECTION1 COMMA? CORRECTION COMMA?")
-@rule("CORRECTED", "COMMA* CORRECTION1 COMMA?", cost=0.6)
-def _correction() -> str:
-    return "no"
+@rule("CORRECTED", "COMMA* w:CORRECTION1 COMMA?", cost=0.6)
+def _correction(w: Word | None = None) -> str:
+    return "no" if w is None else w.text
 
 
 def _joined(terms: tuple[Term, ...]) -> Names | None:
-    """Names that are all of blocks, or all of places."""
-    places = {term.is_place for term in terms}
-    if len(places) > 1 or any(term.kind is Kind.NO and not term.others for term in terms):
+    if any(term.but for term in terms[:-1]):
+        return None  # "all but red and blue"
+    if any(term.kind is Kind.NO and not term.others for term in terms):
         return None
     if any(term.kind is Kind.NO for term in terms[:-1]):
         return None

@@ -3,15 +3,21 @@
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Sequence
+from typing import Any, Final
+
+from scene_graph import PREDICATES
 
 from ...errors import InvalidGoalError, PlannerError
-from . import clausal, relational, rows, sentences  # noqa: F401  their rules
 from ..parsed import Parsed, Said
+from ..said import EXAMPLE, no_relation
+from ..terms import Words
+from . import clausal, relational, rows, sentences  # noqa: F401  their rules
 from .discourse import Discourse
 from .lattice import lattice_of
 from .nominal import GRAMMAR
-from .tokens import tokens_of
+from .sentences import Joined
+from .tokens import Token, tokens_of
 
 _LITERALS: Final = GRAMMAR.literals()
 #: Readings whose costs differ by less than this are as good as one another.
@@ -26,13 +32,13 @@ def parse_goal(text: str) -> Parsed:
     Raises:
         InvalidGoalError: there is none, or the best do not make sense.
     """
-    lattice = lattice_of(tokens_of(text), _LITERALS)
-    parses = [found for found in GRAMMAR.parses("TEXT", lattice) if found[0] == len(lattice)]
+    tokens = tokens_of(text)
+    parses = _parses(tokens)
     best: float | None = None
     error: PlannerError | None = None
     readings: dict[tuple[Said, ...], float] = {}
-    for _, joined, cost in parses:
-        limit = parses[0][2] + _TOLERATED if best is None else best + _AS_GOOD
+    for cost, joined in parses:
+        limit = parses[0][0] + _TOLERATED if best is None else best + _AS_GOOD
         if cost > limit:
             break
         try:
@@ -47,5 +53,39 @@ def parse_goal(text: str) -> Parsed:
             best = cost if best is None else best
             readings.setdefault(said, cost)
     if not readings:
-        raise error or InvalidGoalError("it is not understood")
+        raise error or _not_understood(text, tokens, bool(parses))
     return Parsed(tuple(readings))
+
+
+def _parses(tokens: Sequence[Token]) -> list[tuple[float, tuple[Joined, ...]]]:
+    """What the whole of some words may mean, the cheapest first."""
+    lattice = lattice_of(tokens, _LITERALS)
+    found: list[Any] = GRAMMAR.parses("TEXT", lattice)
+    return [(cost, joined) for end, joined, cost in found if end == len(lattice)]
+
+
+def _not_understood(text: str, tokens: Sequence[Token], parsed: bool) -> InvalidGoalError:
+    """The error of the first part of a text that is not understood."""
+    parts: list[list[Token]] = [[]]
+    for token in tokens:
+        if token.text in (",", ".", "?", ":", "-", "and"):
+            parts.append([])
+        else:
+            parts[-1].append(token)
+    parts = [part for part in parts if part]
+    if not parts:
+        return InvalidGoalError(f"the goal is empty; {EXAMPLE}")
+    wrong = [part for part in parts if not _parses(part)] or [[parts[0][0], parts[-1][-1]]]
+    if wrong[0][0] is parts[0][0] and wrong[0][-1] is not parts[-1][-1] and parsed:
+        wrong = [[parts[0][0], parts[-1][-1]]]
+    words = wrong[0]
+    last = len(words)
+    while last and words[last - 1].text in ("the", "a"):
+        last -= 1
+    for start in range(last):
+        if tuple(token.text for token in words[start:last]) in PREDICATES.phrases:
+            said = text[words[start].offset : words[last - 1].end]
+            return InvalidGoalError(
+                f"there is no block or place behind this; {EXAMPLE}", words[start].offset, said
+            )
+    return no_relation(text, [Words(token.text, token.offset, token.end) for token in words])

@@ -62,6 +62,13 @@ def _at_side(w: Word, t: Word, s: Word) -> Link | None:
     return Link(words_of(w), INSIDE, Names((place,)), how="side")
 
 
+@rule("PLAINLINK", "INPLACE THE PLACENOUN d:DIRECTLY r:RELATION l:LISTED")
+def _in_place_aside(d: Word, r: Word, l: Names) -> Link | None:
+    if r.phrase is None or r.phrase.predicate.name not in _SIDEWAYS:
+        return None
+    return Link(words_of(r), r.phrase, l, adjacent=True)
+
+
 @rule("PLAINLINK", "INPLACE THE PLACENOUN r:RELATION l:LISTED", "INPLACE THE PLACENOUN WHICH BE r:RELATION l:LISTED", "INPLACE A PLACENOUN r:RELATION l:LISTED")
 def _in_place_beside(r: Word, l: Names) -> Link | None:
     if r.phrase is None or r.phrase.predicate.name != BESIDE:
@@ -146,12 +153,12 @@ def _off(w: Word, l: Names) -> Link | None:
     return Link(words_of(w), INSIDE if place else UPON, l, denied=True)
 
 
-@rule("LINK", "l:PLAINLINK")
+@rule("LINK", "l:PLAINLINK", "l:PLAINLINK 'either'")
 def _plain(l: Link) -> Link:
     return l
 
 
-@rule("LINK", "NOT l:PLAINLINK", "NOT 'to' BE l:PLAINLINK")
+@rule("LINK", "NOT l:PLAINLINK", "NOT 'to' BE l:PLAINLINK", "NOT l:PLAINLINK 'either'")
 def _denied(l: Link) -> Link | None:
     if l.adjacent or l.how in ("alone", "where"):
         return None
@@ -173,8 +180,11 @@ def _one(l: Link) -> tuple[Link, ...]:
     return (l,)
 
 
-@rule("LINKS", "l:LINK m:LINKS", "l:LINK COMMA? WHICH BE m:LINKS", "l:LINK COMMA? WHICH MUST BE? m:LINKS", "l:LINK COMMA? 'with' 'it' BE m:LINKS")
-def _chain(l: Link, m: tuple[Link, ...]) -> tuple[Link, ...] | None:
+@rule("LINKS", "l:LINK m:LINKS", "l:LINK COMMA? w:WHICH BE m:LINKS", "l:LINK COMMA? w:WHICH MUST BE? m:LINKS", "l:LINK COMMA? w:WHICH BE m:LINKS COMMA")
+def _chain(l: Link, m: tuple[Link, ...], w: Word | None = None) -> tuple[Link, ...] | None:
+    if w is not None:
+        block = l.names is not None and not l.names.terms[0].is_place and not l.how
+        return (l, replace(m[0], chained=True), *m[1:]) if block else None
     if l.names is None and l.how not in ("alone",):
         # "at the top in stack1", "together in stack1"
         return (l, *m) if m[0].names and l.how in ("top", "bottom", "same", "there") else None

@@ -43,7 +43,7 @@ def _unseparated(b: Term, r: tuple[Term, ...] = (), c: Term | None = None) -> tu
     return (b, *r) if c is None else (b, c)
 
 
-@rule("ORDERSEP", "COMMA AND?", "AND", "STOP", "COMMA COMES", "COMMA? AND? COMES")
+@rule("ORDERSEP", "COMMA AND?", "AND", "MARK", "COMMA COMES", "COMMA? AND? COMES")
 def _order_sep() -> str:
     return ","
 
@@ -86,7 +86,7 @@ def _row(
     return row_of(d[0], n if d[1] else n[::-1], p)
 
 
-@rule("PAUSE", "COMMA", "COLON", "STOP")
+@rule("PAUSE", "COMMA", "COLON", "MARK")
 def _pause() -> str:
     return ":"
 
@@ -147,6 +147,11 @@ def _then(b: Term) -> tuple[str, Term]:
     return "then", b
 
 
+@rule("LEVEL", "b:BLOCK BE? ONIT", "ONIT COMES? b:BLOCK", cost=0.4)
+def _upon(b: Term) -> tuple[str, Term]:
+    return "upon", b
+
+
 @rule("COMES", "BE", "'comes'", "MUST BE", "PUT")
 def _comes() -> str:
     return "comes"
@@ -159,21 +164,21 @@ def _levels(
     return (a, *r) if b is None else (a, b)
 
 
-@rule("LEVELSEP", "COMMA AND?", "AND", "STOP AND?", "COMMA? 'with'", "COMMA BUT")
+@rule("LEVELSEP", "COMMA AND?", "AND", "MARK AND?", "COMMA? 'with'", "COMMA BUT")
 def _level_sep() -> str:
     return ","
 
 
-@rule("ROW", "l:LEVELS", "HEADING PAUSE? l:LEVELS", "HEADING p:INPLACEOF PAUSE? l:LEVELS", "HEADING p:INPLACEOF COMMA? 'with' l:LEVELS", "p:INPLACEOF PAUSE? l:LEVELS",
-      "p:INPLACEOF COMMA? HEADING PAUSE? l:LEVELS", "l:LEVELS COMMA? p:INPLACEOF", "p:INPLACEOF MUST? HAS l:LEVELS",
-      "HEADING COMMA? 'with' l:LEVELS")  # fmt: skip
-@rule("ROW", "HEADING n:INORDER COMMA? 'with' l:LEVELS", "HEADING n:INORDER COMMA? l:LEVELS", "HEADING p:INPLACEOF PAUSE? n:INORDER COMMA? 'with' l:LEVELS")
-@rule("ROW", "'with' l:LEVELS COMMA? HEADING n:INORDER", "'with' e:LEVEL COMMA? HEADING n:INORDER", "HEADING n:INORDER COMMA? 'with' e:LEVEL",
-      "HEADING n:INORDER COMMA? e:LEVEL",
-      "HEADING p:INPLACEOF PAUSE? n:INORDER COMMA? 'with' e:LEVEL", "HEADING n:INORDER p:INPLACEOF COMMA? 'with' e:LEVEL")  # fmt: skip
+@rule("ROW", "l:LEVELS", "h:HEADING PAUSE? l:LEVELS", "h:HEADING p:INPLACEOF PAUSE? l:LEVELS", "h:HEADING p:INPLACEOF COMMA? 'with' l:LEVELS", "p:INPLACEOF PAUSE? l:LEVELS",
+      "p:INPLACEOF COMMA? h:HEADING PAUSE? l:LEVELS", "l:LEVELS COMMA? p:INPLACEOF", "p:INPLACEOF MUST? HAS l:LEVELS",
+      "h:HEADING COMMA? 'with' l:LEVELS")  # fmt: skip
+@rule("ROW", "h:HEADING n:INORDER COMMA? 'with' l:LEVELS", "h:HEADING n:INORDER COMMA? l:LEVELS", "h:HEADING p:INPLACEOF PAUSE? n:INORDER COMMA? 'with' l:LEVELS")
+@rule("ROW", "'with' l:LEVELS COMMA? h:HEADING n:INORDER", "'with' e:LEVEL COMMA? h:HEADING n:INORDER", "h:HEADING n:INORDER COMMA? 'with' e:LEVEL",
+      "h:HEADING n:INORDER COMMA? e:LEVEL",
+      "h:HEADING p:INPLACEOF PAUSE? n:INORDER COMMA? 'with' e:LEVEL", "h:HEADING n:INORDER p:INPLACEOF COMMA? 'with' e:LEVEL")  # fmt: skip
 def _leveled(
     l: tuple[tuple[str, Term], ...] = (), p: Term | None = None, n: tuple[Term, ...] = (),
-    e: tuple[str, Term] | None = None
+    e: tuple[str, Term] | None = None, h: str | None = None
 ) -> Row | None:  # fmt: skip
     if e is not None:
         # In the order that was told, from the end that was named.
@@ -188,6 +193,9 @@ def _leveled(
         upwards = first == (e[0] == "bottom")
         return row_of(UP, n if upwards else n[::-1], p)
     where = [how for how, _ in l]
+    if "upon" in where and h is None:
+        return None  # "red at the bottom, blue on it": of which tower?
+    where = ["then" if how == "upon" else how for how in where]
     blocks = [block for _, block in l]
     ordered = _ordered(where, blocks)
     if ordered is None:

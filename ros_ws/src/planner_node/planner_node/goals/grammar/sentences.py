@@ -19,6 +19,11 @@ def _who(w: Word | str) -> str:
     return "who"
 
 
+@rule("PERSON", "THE PERSONNOUN", "PERSONNOUN", "THE UNKNOWN PERSONNOUN")
+def _known_person() -> str:
+    return "who"
+
+
 @rule("PERSON", "THE? UNKNOWN", "THE? UNKNOWN UNKNOWN", "A UNKNOWN", "EVERY UNKNOWN", cost=1.0)
 def _person() -> str:
     return "who"
@@ -27,7 +32,7 @@ def _person() -> str:
 # What stands in front of a wish
 
 
-@rule("FRAME", "WHO WANT SEEING*", "WHO DO WANT SEEING*", "WHO MUST WANT SEEING*", "WHO MUST SEEING+", "WHO MUST MAKESURE SOTHAT?")
+@rule("FRAME", "WHO WANT SEEING*", "WHO DO WANT SEEING*", "WHO MUST WANT SEEING*", "WHO MUST SEEING+", "WHO MUST MAKESURE SOTHAT?", "WHO MUST ASK YOU 'to'", "WHO ASK YOU 'to'", "MODAL WHO ASK YOU 'to'", "PUT IT COLON")
 @rule("FRAME", "MODAL YOU", "MODAL YOU MIND", "MODAL YOU MAKESURE SOTHAT?", "MODAL YOU SEEING+", "MODAL YOU MIND MAKESURE SOTHAT?")
 @rule("FRAME", "MIND", "MAKESURE COLON", "THANKSFOR", "MODAL WHO WANT SEEING*", "PUT 'it' LIKE A? UNKNOWN COLON", "THE ORDINAL TOWERNOUN? BE", "PUT? A? HEADINGNOUN 'of'", "THE GOAL")
 @rule("FRAME", "MODAL WHO SEEING*", "YOU MUST", "YOU MAY", "YOU 'to'", "YOU MUST MAKESURE SOTHAT?")
@@ -51,7 +56,7 @@ def _frame_denied() -> bool:
     return True
 
 
-@rule("LETTING", "'let'", "'allow'", "'have'", "'permit'")
+@rule("LETTING", "'let'", "'allow'", "'permit'")
 def _letting() -> str:
     return "let"
 
@@ -147,7 +152,7 @@ def _to_suffix(c: Item, f: bool = False) -> Item | None:
     return _under(f, c)
 
 
-@rule("SUFFIX", "MUST BE GOOD", "'that' MUST BE GOOD", "'it' MUST BE GOOD", "BE WHATIWANT", "AND WHO MUST BE GOOD", "COMMA AND WHO MUST BE GOOD", "'that' BE WHATIWANT", "'it' BE", "AND WHO MUST BE UNKNOWN", "BE THE? GOAL", "'that' BE THE? GOAL", "WHO LOVEIT", "WHO MUST BE GOOD", "ANYORDER", "WHO WANT", "WHO THINK", "'that' MUST BE UNKNOWN", "BE MUST", "'if' 'it' BE GOOD", "'that' BE GOOD")
+@rule("SUFFIX", "MUST BE GOOD", "'that' MUST BE GOOD", "'it' MUST BE GOOD", "BE WHATIWANT", "AND WHO MUST BE GOOD", "COMMA AND WHO MUST BE GOOD", "'that' BE WHATIWANT", "AND WHO MUST BE UNKNOWN", "BE THE? GOAL", "'that' BE THE? GOAL", "WHO LOVEIT", "WHO MUST BE GOOD", "ANYORDER", "WHO WANT", "WHO THINK", "'that' MUST BE UNKNOWN", "BE MUST", "'if' 'it' BE GOOD", "'that' BE GOOD")
 def _suffix() -> str:
     return ""
 
@@ -263,6 +268,7 @@ def _instead(c: Item) -> tuple[Item, ...]:
     return (c,)
 
 
+@rule("ITEM", "INPLACE b:PLACE COLON", cost=0.5)
 @rule("ITEM", "b:BLOCK FIRST", "b:BLOCK COMMA", "FIRST b:BLOCK", "b:BLOCK", "b:BLOCK 'comes' FIRST", cost=1.0)
 def _mention(b: Term) -> tuple[Item, ...]:
     return (Mention(b),)
@@ -278,33 +284,54 @@ def _preamble() -> str:
     return ""
 
 
-@rule("SEP", "BUT", "COMMA BUT", "STOP BUT", "BUT AND")
+@rule("SEP", "COMMA? BUT", "MARK BUT", "BUT AND")
 def _but_sep() -> str:
     return "but"
 
 
-@rule("SEP", "COMMA", "AND", "COMMA AND", "STOP", "STOP AND", "STOP STOP", "MARK MARK", "MARK COMMA", "COMMA COMMA", "AND COMMA", "COMMA AND COMMA", "AND SOTHAT", "COMMA SOTHAT", "COMMA 'with'", "'with'", "COMMA 'where'", "STOP AND COMMA")
-def _sep() -> str:
-    return ""
+@rule("SEP", "MARK", "MARK AND COMMA?", "MARK MARK", "MARK COMMA", "COMMA MARK")
+def _mark_sep() -> str:
+    return "."
+
+
+@rule("SEP", "COMMA", "COMMA? AND COMMA?", "COMMA COMMA", "COMMA? AND SOTHAT", "COMMA SOTHAT", "COMMA 'where'")
+@rule("SEP", "SOTHAT", cost=0.3)
+def _comma_sep() -> str:
+    return ","
+
+
+@rule("SEP", "COMMA? 'with'")
+def _with_sep() -> str:
+    return "with"
 
 
 #: An item, and how it is joined to what stands in front of it.
 Joined = tuple[str, tuple[Item, ...]]
 
 
-@rule("ITEMS", "i:ITEM", "i:ITEM STOP+")
+@rule("ENDMARK", "w:MARK", "w:COMMA")
+def _end_mark(w: Word) -> Word:
+    return w
+
+
+@rule("ITEMS", "i:ITEM", "i:ITEM ENDMARK+")
 def _last(i: tuple[Item, ...]) -> tuple[Joined, ...]:
     return (("", i),)
 
 
 @rule("ITEMS", "i:ITEM s:SEP r:ITEMS")
 @rule("ITEMS", "i:ITEM r:ITEMS", cost=1.5)
-def _more(i: tuple[Item, ...], r: tuple[Joined, ...], s: str = "") -> tuple[Joined, ...]:
+def _more(i: tuple[Item, ...], r: tuple[Joined, ...], s: str = "") -> tuple[Joined, ...] | None:
+    first = r[0][1][0] if r[0][1] else None
+    if not s and isinstance(first, Relate) and first.subject is None:
+        return None
     return (("", i), (s or r[0][0], r[0][1]), *r[1:])
 
 
-@rule("ITEMS", "i:ITEM MARK? CORRECTED MARK? r:ITEMS", cost=0.2)
-def _replaced(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...] | None:
+@rule("ITEMS", "i:ITEM MARK? c:CORRECTED MARK? r:ITEMS", cost=0.2)
+def _replaced(
+    i: tuple[Item, ...], c: str, r: tuple[Joined, ...]
+) -> tuple[Joined, ...] | None:
     """What follows stands for what it was in front of: an "it" in it would not be clear."""
     if not i or not isinstance(i[0], Relate):
         return None
@@ -313,12 +340,28 @@ def _replaced(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...] 
         return None
     if isinstance(first[0], Relate) and first[0].denied:
         return None
+    if c in ("wait", "sorry") and not _overlap(i[0], first[0]):
+        return None  # is it another wish?
     if isinstance(first[0], Relate) and first[0].subject is None:
         return ((r[0][0], (replace(first[0], subject=i[0].subject),)), *r[1:])
     return r
 
 
-@rule("ITEMS", "i:ITEM COMMA? INSTEADOF c:CLAUSE STOP*", cost=0.2)
+def _overlap(one: Relate, other: Item) -> bool:
+    """Whether two are said of the same subject, or to the same object."""
+    if not isinstance(other, Relate):
+        return False
+    if other.subject is None or one.subject is None:
+        return True
+    subjects = [{term.words.text for term in each.subject.terms} for each in (one, other)]  # type: ignore[union-attr]
+    objects = [
+        {term.words.text for link in each.links if link.names for term in link.names.terms}
+        for each in (one, other)
+    ]
+    return bool(subjects[0] & subjects[1] or objects[0] & objects[1])
+
+
+@rule("ITEMS", "i:ITEM COMMA? INSTEADOF c:CLAUSE ENDMARK*", cost=0.2)
 def _rather_than(i: tuple[Item, ...], c: Item) -> tuple[Joined, ...] | None:
     if not i or not isinstance(i[0], Relate):
         return None
@@ -330,7 +373,7 @@ def _or(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...]:
     return (("", i), ("or", r[0][1]), *r[1:])
 
 
-@rule("TEXT", "START STOP* r:ITEMS", "START STOP* AND? r:ITEMS")
+@rule("TEXT", "START ENDMARK* AND? r:ITEMS", "START ENDMARK* 'sorry' COMMA? r:ITEMS")
 def _text(r: tuple[Joined, ...]) -> tuple[Joined, ...]:
     return r
 

@@ -31,7 +31,11 @@ def mended(word: str, known: frozenset[str]) -> tuple[str, ...]:
             near.setdefault(0.5, set()).add(other)
         elif len(other) > 3 and word[0] == other[0] and _vowelless(word) == _vowelless(other):
             near.setdefault(0.8, set()).add(other)
-        elif len(other) > 3 and limit and (distance := edits(word, other)) <= limit:
+        elif len(word) == 3 and other[:-1] == word:
+            near.setdefault(1.0, set()).add(other)
+        elif len(word) < 6 and word[0] != other[0]:
+            continue
+        elif (len(other) > 3 or other in COLORS) and (distance := edits(word, other)) <= limit:
             near.setdefault(float(distance), set()).add(other)
     if not near:
         return ()
