@@ -451,7 +451,12 @@ def _takes(w: Word) -> bool:
 
 
 @rule("PUTS", "w:PUT", "w:PUTTING", "'to' w:PUT")
-def _puts(w: Word) -> bool:
+def _puts(w: Word) -> bool | None:
+    return None if w.text == "make" else False
+
+
+@rule("PUTS", "MAKE", "'to' MAKE", cost=0.6)
+def _makes() -> bool:
     return False
 
 

@@ -76,7 +76,7 @@ EACHOTHER: each other; one another; eachother
 NOUN: block; object; thing; piece; item; brick; part; element; thingy; klotz; stone; toy; guy; unit; specimen; component; bit; figure; shape; body; solid
 ONE: one; ones
 NOUNS: blocks=block; objects=object; things=thing; pieces=piece; items=item; bricks=brick; parts=part; elements=element; thingies=thingy; stones=stone; toys=toy; units=block; components=block; shapes=block; specimens=block; figures=block; solids=block
-SHAPE: box; cube; cylinder; sphere; ball; prism; roof; wedge; cuboid; tube; pipe; barrel; drum; orb; bx; boks; roller=cylinder; bead=sphere; globe=sphere; crate=box; marble=sphere
+SHAPE: box; cube; cylinder; sphere; ball; prism; roof; wedge; cuboid; tube; pipe; barrel; drum; orb; roller=cylinder; bead=sphere; globe=sphere; crate=box; marble=sphere
 SHAPES: boxes=box; cubes=cube; cylinders=cylinder; spheres=sphere; balls=ball; prisms=prism; cuboids=cuboid; tubes=tube; crates=box
 REDS: reds=red; blues=blue; greens=green; yellows=yellow
 TWIN: light; dark; pale; deep; bright; heavy; big; small; large; little; tiny; huge
@@ -96,6 +96,7 @@ MAY: may; can; could; might; allowed; permitted; allowed to; permitted to; suppo
 DO: do; does; did
 THERE: there; here
 PUT: put; place; move; set; get; bring; lay; drop; leave; keep; shift; push; slide; transfer; arrange; build; balance; sit; make; let; have; relocate; stick; add; pop; plop; plonk; chuck; dump; shove; hoist; distribute; rearrange; spread; organize; organise; reorganize; create; form; construct; assemble; give; give me; give us; show; show me; load; deposit; carry; stack; pile; pile up; rest; position; locate; stash; park; install; mount; throw; toss; deliver; hand; station; situate; insert; send; pass; haul; haul over; carry over; bring over; move over; take; stand; gather; collect; group; assign; put down; set down; lay down; drop off; situate; return; lean; nestle; plant; place down; get me; make me; hold; seat; perch; keep hold of; position down; transport; settle; dispatch; re-stack; restack; stow; line up; tuck; fit; squeeze; wedge in; lob; whack; bung; slap; slot in; superimpose; hop; flip; roll; house; store; lodge; leave me; bring me; find me; layer; raise; lower; tidy; sort; clump; unite; combine; join
+MAKE: make
 PUTTING: putting; placing; moving; stacking; setting; getting; bringing; laying; having; keeping; leaving; dropping; building; making; seeing; letting; positioning; sticking; popping; piling; arranging; leaving
 TAKE: take; grab; lift; pick; pick up; fetch; grasp; get; use; find; locate; go get; lift up; look for; seize; get hold of; search for; remove; reach for; choose; select
 OFF: off; off of; from; out of; from on top of; from off; from the top of; off the top of; from out of; out from; from in; from inside; down from; up off; up from; from above; from atop
@@ -196,7 +197,7 @@ PERMITTED: permitted; allowed; acceptable; okay; ok; right; good
 NOTTIME: under no circumstances; at no time; in no case; on no account; by no means
 PLAINUP: on
 IN: in; into; to; inside; at
-ITSELFIN: in it; in them; on them; in there; inside; inside it; on it; there; on top; on top of it; above it; over it
+ITSELFIN: in it; in them; on them; in there; inside; inside it; on it; there
 FURTHEST: furthest; farthest; most
 ELSEWHERE: elsewhere; somewhere else; anywhere else; someplace else; away; to another place; to another stack; to a different place; to a different stack; in another stack; in a different stack; in another place; in a different place; on another stack; on a different stack; on another place; on a different place
 ONLY: only; solely; exclusively; just
@@ -213,7 +214,7 @@ END: end; side; edge; hand side; part
 
 #: Words that are right as they are, and none of those above with a slip.
 _NO_SLIPS: Final = """
- tin bed glue line back ink pine bin can there here half mean base peak saw see said rod tail
+ grain tin bed glue line back ink pine bin can there here half mean base peak saw see said rod tail
  tall table cable able lose love loves like alike black slack snack track stick sticks think thing
  bake rake lake hand land sand sound round ground found bound mound brown grown green greens grin
  wall fall tell sell top tops stop step shop shape nod never lever left lift loft life one none tone
@@ -256,4 +257,6 @@ MORE_COLORS: Final = frozenset({
     "plum", "lilac", "aqua", "azure", "bronze", "copper", "cream", "peach", "salmon", "violet",
     "gray", "grey",
 })  # fmt: skip
+#: The kind of word that may be left out.
+FILLER: Final = "FILLER"
 NO_SLIPS: Final = frozenset(_NO_SLIPS.split())

@@ -174,6 +174,11 @@ def _number(q: tuple[int, int | None], n: tuple[Words, bool], k: Word | None = N
     return term_of(n[0], Kind.COUNT, least=q[0], most=q[1])
 
 
+@rule("SEVERAL", "EXACTLY n:NUMBER")
+def _just(n: Word) -> tuple[int, int | None]:
+    return _exactly(n)
+
+
 @rule("SEVERAL", "q:AMOUNT")
 def _not_one(q: tuple[int, int | None]) -> tuple[int, int | None] | None:
     return None if q == (1, 1) else q  # one at least, or one only?
@@ -204,7 +209,7 @@ def _not_the_other(t: Term, u: Term) -> Names:
     return Names((t,))
 
 
-@rule("TERM", "q:AMOUNT 'of' l:PAIR", "q:AMOUNT 'of' l:SERIES")
+@rule("TERM", "q:SEVERAL 'of' l:PAIR", "q:SEVERAL 'of' l:SERIES")
 def _of_these(q: tuple[int, int | None], l: Names) -> Term | None:
     if any(one.kind is not Kind.THE for one in l.terms) or q[0] > len(l.terms):
         return None
@@ -356,9 +361,13 @@ def _table_there(p: Term) -> Term:
 
 
 @rule("ALLPLACES", "w:EVERY PLACENOUN", "w:EVERY PLACENOUNS")
-@rule("PERPLACE", "w:PER PLACENOUN")
 def _all_places(w: Word) -> Term:
     return term_of(words_of(w, text="stack"), Kind.EVERY)
+
+
+@rule("PERPLACE", "w:PER PLACENOUN")
+def _per_place(w: Word) -> Term | None:
+    return None if w.text == "a" else _all_places(w)
 
 
 @rule("TERM", "p:PLACE", "p:ALLPLACES")
@@ -572,7 +581,9 @@ def _correction(w: Word | None = None) -> str:
 
 
 def _joined(terms: tuple[Term, ...]) -> Names | None:
-    if any(term.but for term in terms[:-1]):
+    if any(term.bare and term.kind is Kind.EVERY for term in terms[1:]):
+        return None
+    if any(term.but or term.among for term in terms[:-1]):
         return None  # "all but red and blue"
     if any(term.kind is Kind.NO and not term.others for term in terms):
         return None

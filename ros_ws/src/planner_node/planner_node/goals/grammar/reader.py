@@ -9,9 +9,9 @@ from typing import Any, Final
 from scene_graph import PREDICATES
 
 from ...errors import InvalidGoalError, PlannerError
-from ..parsed import Parsed, Said
+from ..parsed import Changed, Parsed, Said
 from ..said import EXAMPLE, no_relation
-from ..terms import Words
+from ..terms import Kind, Words
 from . import clausal, relational, rows, sentences  # noqa: F401  their rules
 from .discourse import Discourse
 from .lattice import lattice_of
@@ -24,6 +24,8 @@ _LITERALS: Final = GRAMMAR.literals()
 _AS_GOOD: Final = 0.45
 #: How much dearer a reading may be than one that makes no sense.
 _TOLERATED: Final = 0.9
+#: What it costs at least to read words that are not known.
+_STRANGE: Final = 2.0
 
 
 def parse_goal(text: str) -> Parsed:
@@ -52,9 +54,20 @@ def parse_goal(text: str) -> Parsed:
         if said:
             best = cost if best is None else best
             readings.setdefault(said, cost)
+    if not readings and (error is None or parses[0][0] >= _STRANGE):
+        raise _not_understood(text, tokens, bool(parses))
     if not readings:
-        raise error or _not_understood(text, tokens, bool(parses))
-    return Parsed(tuple(readings))
+        assert error is not None
+        raise error
+    sensible = [said for said in readings if not any(map(_of_itself, said))]
+    return Parsed(tuple(sensible or readings))
+
+
+def _of_itself(said: Said) -> bool:
+    """Whether it relates a block to itself."""
+    if isinstance(said, Changed) or said.subject.kind is not Kind.THE:
+        return False
+    return said.subject.words.text == said.object.words.text
 
 
 def _parses(tokens: Sequence[Token]) -> list[tuple[float, tuple[Joined, ...]]]:

@@ -24,6 +24,8 @@ def _relation(w: Word, l: Names, d: Word | None = None) -> Link | None:
     places = [term.is_place or term.words.text in ("it", "they") for term in l.terms]
     if phrase.needs_place and not all(places):
         return None
+    if len({term.is_place for term in l.terms}) > 1:
+        return None
     if not phrase.predicate.takes_place and any(term.is_place for term in l.terms):
         return None
     if d is not None and phrase.predicate.name == ABOVE:
@@ -34,7 +36,7 @@ def _relation(w: Word, l: Names, d: Word | None = None) -> Link | None:
     return Link(words_of(w), phrase, l, adjacent=adjacent)
 
 
-@rule("PLAINLINK", "w:RELATION l:LISTED", cost=6.0)
+@rule("PLAINLINK", "w:RELATION l:LISTED", cost=1.9)
 def _misused(w: Word, l: Names) -> Link:
     """Read all the same, so that it can be said what is wrong with it."""
     assert w.phrase is not None
@@ -130,7 +132,7 @@ def _each_other(r: Word) -> Link | None:
     return Link(words_of(r), how="each other")
 
 
-@rule("PLAINLINK", "w:ALONE")
+@rule("PLAINLINK", "w:ALONE", cost=0.6)
 def _alone(w: Word) -> Link:
     return Link(words_of(w), how="alone")
 

@@ -8,8 +8,8 @@ from dataclasses import replace
 from ..terms import Kind, Term
 from .clausal import Verb, relate
 from .lattice import Word
-from .meaning import Again, Change, Item, Mention, Names, Relate, Row
-from .nominal import rule, words_of
+from .meaning import Again, Change, Item, Mention, Names, Relate, Row, Take
+from .nominal import UPON, rule, words_of
 
 # Who wishes
 
@@ -19,7 +19,12 @@ def _who(w: Word | str) -> str:
     return "who"
 
 
-@rule("PERSON", "THE PERSONNOUN", "PERSONNOUN", "THE UNKNOWN PERSONNOUN")
+@rule("OTHERWORD", "w:UNKNOWN", "w:PERSONNOUN")
+def _other_word(w: Word) -> Word:
+    return w
+
+
+@rule("PERSON", "THE PERSONNOUN", "PERSONNOUN", "THE UNKNOWN PERSONNOUN", "A PERSONNOUN")
 def _known_person() -> str:
     return "who"
 
@@ -34,7 +39,7 @@ def _person() -> str:
 
 @rule("FRAME", "WHO WANT SEEING*", "WHO DO WANT SEEING*", "WHO MUST WANT SEEING*", "WHO MUST SEEING+", "WHO MUST MAKESURE SOTHAT?", "WHO MUST ASK YOU 'to'", "WHO ASK YOU 'to'", "MODAL WHO ASK YOU 'to'", "PUT IT COLON")
 @rule("FRAME", "MODAL YOU", "MODAL YOU MIND", "MODAL YOU MAKESURE SOTHAT?", "MODAL YOU SEEING+", "MODAL YOU MIND MAKESURE SOTHAT?")
-@rule("FRAME", "MIND", "MAKESURE COLON", "THANKSFOR", "MODAL WHO WANT SEEING*", "PUT 'it' LIKE A? UNKNOWN COLON", "THE ORDINAL TOWERNOUN? BE", "PUT? A? HEADINGNOUN 'of'", "THE GOAL")
+@rule("FRAME", "MIND", "MAKESURE COLON", "MAKESURE 'and'", "NUMBER HEADINGNOUNS COLON", "THANKSFOR", "MODAL WHO WANT SEEING*", "PUT 'it' LIKE A? UNKNOWN COLON", "THE ORDINAL TOWERNOUN? BE", "PUT? A? HEADINGNOUN 'of'", "THE GOAL")
 @rule("FRAME", "MODAL WHO SEEING*", "YOU MUST", "YOU MAY", "YOU 'to'", "YOU MUST MAKESURE SOTHAT?")
 @rule("FRAME", "MAKESURE SOTHAT?", "MAKESURE 'to'", "PUT MAKESURE SOTHAT")
 @rule("FRAME", "'it' BE GOOD SEEING*", "'it' MUST BE GOOD SEEING*", "GOOD SOTHAT", "WHO BE GOOD SEEING*", "'it' MUST BE GOOD IFNICE YOU?", "'it' MUST BE GOOD IFNICE YOU MAY")
@@ -91,7 +96,7 @@ def _wherein() -> str:
     return "where"
 
 
-@rule("GIVENS", "GIVENFOR THE? UNKNOWN+", "GIVENFOR DISCUSSED", "GIVENFOR THE? UNKNOWN? STEP", "GIVENFOR THE? FILLABLE* UNKNOWN* STEP NUMBER?", "GIVENFOR THE? FILLABLE+ UNKNOWN+", cost=0.8)
+@rule("GIVENS", "GIVENFOR THE? FILLABLE* OTHERWORD+", "GIVENFOR DISCUSSED", "GIVENFOR THE? FILLABLE* OTHERWORD* STEP NUMBER?", cost=0.8)
 def _givens() -> str:
     return "given"
 
@@ -160,7 +165,7 @@ def _suffix() -> str:
 # What says nothing
 
 
-@rule("IDLE", "FILLEDOUT", "OTHERS DONTCARE", "w:ANYORDER", "'i' DONTCARE OTHERS", "LETSBUILD", "SUFFIX", "KEEPING", "SPREADOUT")
+@rule("IDLE", "FILLEDOUT", "OTHERS DONTCARE", "w:ANYORDER", "'i' DONTCARE OTHERS", "SUFFIX", "KEEPING", "SPREADOUT")
 def _idle(w: Word | None = None) -> str:
     return "idle"
 
@@ -170,7 +175,7 @@ def _filled() -> str:
     return ""
 
 
-@rule("LETSBUILD", "LETUS PUT A? HEADINGNOUN", "PUT A? HEADINGNOUN", "WHO WANT A? HEADINGNOUN", "PUT NUMBER HEADINGNOUNS", "WHO WANT NUMBER HEADINGNOUNS")
+@rule("LETSBUILD", "LETUS PUT A? HEADINGNOUN", "PUT A? HEADINGNOUN", "WHO WANT A? HEADINGNOUN", "PUT NUMBER HEADINGNOUNS", "WHO WANT NUMBER HEADINGNOUNS", "NUMBER HEADINGNOUNS")
 def _lets_build() -> str:
     return ""
 
@@ -319,12 +324,18 @@ def _last(i: tuple[Item, ...]) -> tuple[Joined, ...]:
     return (("", i),)
 
 
+@rule("ITEMS", "LETSBUILD s:SEP r:ITEMS")
+def _heading_first(s: str, r: tuple[Joined, ...]) -> tuple[Joined, ...]:
+    return r
+
+
 @rule("ITEMS", "i:ITEM s:SEP r:ITEMS")
 @rule("ITEMS", "i:ITEM r:ITEMS", cost=1.5)
 def _more(i: tuple[Item, ...], r: tuple[Joined, ...], s: str = "") -> tuple[Joined, ...] | None:
     first = r[0][1][0] if r[0][1] else None
-    if not s and isinstance(first, Relate) and first.subject is None:
-        return None
+    if isinstance(first, Relate) and first.subject is None and i:
+        if not s or (first.bare and isinstance(i[0], Take) and i[0].off is not None):
+            return None
     return (("", i), (s or r[0][0], r[0][1]), *r[1:])
 
 
@@ -334,6 +345,8 @@ def _replaced(
 ) -> tuple[Joined, ...] | None:
     """What follows stands for what it was in front of: an "it" in it would not be clear."""
     if not i or not isinstance(i[0], Relate):
+        return None
+    if any(link.phrase == UPON and link.names and len(link.names.terms) > 1 for link in i[0].links):
         return None
     first = r[0][1]
     if len(first) != 1 or not isinstance(first[0], Relate | Row):

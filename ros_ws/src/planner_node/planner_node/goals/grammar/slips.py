@@ -29,7 +29,7 @@ def mended(word: str, known: frozenset[str]) -> tuple[str, ...]:
             continue
         if _harmless(word, other):
             near.setdefault(0.5, set()).add(other)
-        elif len(other) > 3 and word[0] == other[0] and _vowelless(word) == _vowelless(other):
+        elif (len(other) > 3 or other in COLORS) and word[0] == other[0] and _vowelless(word) == _vowelless(other):
             near.setdefault(0.8, set()).add(other)
         elif len(word) == 3 and other[:-1] == word:
             near.setdefault(1.0, set()).add(other)
