@@ -24,7 +24,7 @@ class Verb:
     """What the words of a verb say: it is denied, it may be, it was."""
 
     denied: bool = False
-    may: bool = False
+    may: str = ""
     past: bool = False
     floats: bool = False
 
@@ -54,6 +54,11 @@ def _may_word(w: Word) -> tuple[str, str]:
     return "may", w.text
 
 
+@rule("VERBWORD", "w:CAN")
+def _can_word(w: Word) -> tuple[str, str]:
+    return "can", w.text
+
+
 @rule("VERBWORD", "w:PAST")
 def _past_word(w: Word) -> tuple[str, str]:
     return "past", w.text
@@ -69,7 +74,8 @@ def _verb(w: Sequence[tuple[str, str]]) -> Verb | None:
             return None
     if ("not", "have") in {(kind, after) for (kind, _), (_, after) in pairwise(w)}:
         return None  # "should not have put"
-    return Verb("not" in kinds, "may" in kinds, "past" in kinds, set(kinds) == {"all"})
+    may = "may" if "may" in kinds else "can" if "can" in kinds else ""
+    return Verb("not" in kinds, may, "past" in kinds, set(kinds) == {"all"})
 
 
 def _asked(v: Verb | None, s: Names | None, wished: bool) -> bool:
@@ -79,7 +85,7 @@ def _asked(v: Verb | None, s: Names | None, wished: bool) -> bool:
     if v.past and not wished:
         return False
     none = s is not None and (s.denied or all(term.kind is Kind.NO for term in s.terms))
-    return not v.may or v.denied or none
+    return not v.may or v.denied or none or (wished and v.may == "can")
 
 
 def relate(
@@ -143,7 +149,7 @@ for _clause, _wished in (("CLAUSE", False), ("WISHED", True)):
     @rule(_clause, "s:LISTED v:VERB? HAS o:LISTED ITSELFIN?", "s:LISTED v:VERB? HAS o:AMOUNTED ITSELFIN?",
           "s:LISTED v:VERB o:AMOUNTED", "s:LISTED v:VERB? HAS o:LISTED x:EXCLUSIVE ITSELFIN?",
           "s:LISTED v:VERB? HAS x:ONLY o:LISTED ITSELFIN?", "THE? HEIGHT 'of' s:LISTED v:VERB? o:AMOUNTED",
-          "s:LISTED v:VERB? HIGHER AS k:NUMBER NOUNS?")  # fmt: skip
+          "s:LISTED v:VERB? HIGHER AS k:NUMBER NOUNS?", "THE? HEIGHT 'of' s:LISTED v:VERB EXCEED k:NUMBER NOUNS?", "s:LISTED v:VERB EXCEED k:NUMBER NOUNS?")  # fmt: skip
     def _has(
         s: Names, o: Names | None = None, v: Verb | None = None, x: Word | None = None,
         w: bool = _wished, k: Word | None = None,
@@ -179,13 +185,21 @@ for _clause, _wished in (("CLAUSE", False), ("WISHED", True)):
         how = "bottom" if "b" in t.text.split()[-1] else "top"
         return Relate(o, (Link(words_of(t), how=how, names=s),)) if _asked(v, s, w) else None
 
-    @rule(_clause, "s:LISTED v:VERB? COVERED o:LISTED", "s:LISTED v:VERB? SUPPORTED o:LISTED", "s:LISTED v:VERB? CARRY o:LISTED")
+    @rule(_clause, "s:LISTED v:VERB? COVERED o:LISTED", "s:LISTED v:VERB? CARRY o:LISTED", "o:LISTED v:VERB? SUPPORTED s:LISTED")
     def _covered(
         s: Names, o: Names, v: Verb | None = None, w: bool = _wished
     ) -> Relate | None:
         if s.either or not _asked(v, s, w) or any(term.is_place for term in (*s.terms, *o.terms)):
             return None
         return _has_them(s, o, v, Link(s.terms[0].words, UPON, s))
+
+    @rule(_clause, "THE NUMBEROF n:NAME l:LINKS v:VERB q:AMOUNT")
+    def _number_of(
+        n: tuple[Words, bool], l: tuple[Link, ...], v: Verb, q: tuple[int, int | None],
+        w: bool = _wished,
+    ) -> Relate | None:  # fmt: skip
+        number = Names((term_of(n[0], Kind.COUNT, least=q[0], most=q[1]),))
+        return relate(number, l, v) if _asked(v, number, w) and len(l) == 1 else None
 
     @rule(_clause, "s:LISTED v:VERB? SHARE A? PLACENOUN", "s:LISTED v:VERB? SHARE A? PLACENOUN 'with' o:LISTED",
           "s:LISTED v:VERB? SHARE p:PLACE")  # fmt: skip
@@ -197,6 +211,13 @@ for _clause, _wished in (("CLAUSE", False), ("WISHED", True)):
         if p is not None:
             link = Link(p.words, INSIDE, Names((p,)))
         return relate(s, (link,), v) if _asked(v, s, w) else None
+
+    @rule(_clause, "s:LISTED o:AMOUNTED", cost=0.4)
+    def _no_place_has(s: Names, o: Names) -> Relate | None:
+        """ "no pile over two high"."""
+        if len(s.terms) != 1 or s.terms[0].kind is not Kind.NO or s.terms[0].words.text != "stack":
+            return None
+        return _has_them(s, o, None, Link(s.terms[0].words, INSIDE, s))
 
     @rule(_clause, "NO 'two' n:NAME v:VERB? SAMEPLACE", "NO 'two' n:NAME v:VERB? SHARE A? PLACENOUN")
     def _no_two(n: tuple[Words, bool], v: Verb | None = None, w: bool = _wished) -> Relate | None:
@@ -239,6 +260,9 @@ for _clause, _wished in (("CLAUSE", False), ("WISHED", True)):
     ) -> Relate | None:
         if (v and v.denied) or s.either or s.denied or len(l) > 1 or l[0].denied:
             return None
+        if v and v.may and all(term.kind is Kind.THE for term in s.terms):
+            nothing = term_of(Words("block", 0, 0), Kind.NO, least=0, most=0, but=s.terms)
+            return Relate(Names((nothing,)), l)
         if any(term.is_place for term in s.terms) or not _asked(v, s, w):
             return None
         if all(term.kind is Kind.COUNT for term in s.terms):
@@ -348,7 +372,9 @@ def _exclusive(w: Word) -> Word:
 def _bare(s: Names, l: tuple[Link, ...]) -> Relate | None:
     if _before(l, s) and l[0].denied:
         return None
-    if l[0].denied and any(term.kind is Kind.EVERY for term in s.terms):
+    aside = l[0].phrase is not None and l[0].phrase.predicate.name == LEFT
+    every = any(term.kind is Kind.EVERY for term in s.terms)
+    if every and (l[0].denied or (aside and s.terms[0].words.text == "block")):
         return None  # "all blocks not in stack1": of whom something else is said?
     return relate(s, l, bare=True)
 
@@ -455,20 +481,26 @@ def _puts(w: Word) -> bool | None:
     return None if w.text == "make" else False
 
 
+@rule("PUTS", "PUT YOU", cost=0.3)
 @rule("PUTS", "MAKE", "'to' MAKE", cost=0.6)
 def _makes() -> bool:
     return False
 
 
 @rule("PUTS", "DO? w:NOT w2:PUT", "'to' w:NOT PUT", "NOT 'to' w:PUT", "YOU MUST w:NOT PUT", "MUST w:NOT PUT", "YOU MAY w:NOT PUT", "AVOID w:PUTTING",
-      "DO w:NOT PUT", "w:NOT PUTTING", "'without' w:PUTTING")  # fmt: skip
+      "DO w:NOT PUT", "DO w:NOT YOU? DARE PUT", "DO w:NOT YOU? DARE PUTTING", "w:NOT PUTTING", "'without' w:PUTTING")  # fmt: skip
 def _puts_not(w: Word, w2: Word | None = None) -> bool:
     return True
 
 
-@rule("CLAUSE", "w:CLEARS s:LISTED", "CLEARS THE? w:TOPOF s:LISTED", "PUT w:TOPOF s:LISTED CLEAR", "COVER s:LISTED 'with' w:NOTHING", "THE? w:TOPOF s:LISTED VERB? CLEAR")
+@rule("CLAUSE", "w:REMOVE WHATIS UPONTHAT s:LISTED", "WHATIS w:UPONTHAT s:LISTED MUST? COMEOFF", "TAKE w:WHATIS UPONTHAT s:LISTED OFFTHERE", "w:CLEARS s:LISTED", "CLEARS THE? w:TOPOF s:LISTED", "PUT w:TOPOF s:LISTED CLEAR", "COVER s:LISTED 'with' w:NOTHING", "THE? w:TOPOF s:LISTED VERB? CLEAR")
 def _clear_it(s: Names, w: Word) -> Relate | None:
     return Relate(s, (Link(words_of(w), how="clear"),))
+
+
+@rule("UPONTHAT", "w:RELATION", "w:TOPOF", "w:OFF")
+def _upon_that(w: Word) -> Word | None:
+    return w if w.phrase in (None, UPON) or w.text in ("above", "over") else None
 
 
 @rule("CLAUSE", "n:COVERS s:LISTED 'with' o:LISTED")

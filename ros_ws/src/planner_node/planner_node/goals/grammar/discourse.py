@@ -41,6 +41,9 @@ class Discourse:
         #: A name of which nothing is said yet.
         self._mentioned: Term | None = None
         self._sides = False
+        #: Who stands at the bottom of a tower of which it is not yet said where it is.
+        self._foot: Term | None = None
+        self._footed: Term | None = None
         #: How many relations there were before the sentence.
         self._before = 0
 
@@ -166,6 +169,8 @@ class Discourse:
                 if number < 2 or 0 < self._before == len(self.relations):
                     raise unclear(term)
                 found += list(self._named.values())
+                if self._foot is not None and phrase is None:
+                    self._footed = self._foot
             else:
                 found.append(self._meant(term, phrase, carried))
         return found
@@ -268,7 +273,7 @@ class Discourse:
             if any(self._is_it(term) for term in (item.subject.terms if item.subject else ())):
                 raise _unclear_words(written)
             middle = link.names is not None and link.names.terms[0].words.side == "middle"
-            if middle and not all(term.several for term in subjects):
+            if middle and not all(term.several or term.kind is Kind.NO for term in subjects):
                 raise _unclear_words(written)  # of a tower, or of the places?
             self._sides = True
         if how in ("top", "bottom"):
@@ -337,6 +342,9 @@ class Discourse:
                 if denied:
                     raise _unclear_words(written)
                 self._add(subjects, _BESIDE, False, written, one)
+        if self._footed is not None and objects[-1].is_place and not denied:
+            self._add([self._footed], UPON, False, written, objects[-1])
+            self._footed = None
         self.subjects, self.object = list(subjects), objects[-1]
         self.link = (phrase, denied, written)
 
@@ -346,6 +354,10 @@ class Discourse:
         assert link.names is not None and link.phrase is not None
         names = link.names
         all_none = all(term.kind is Kind.NO for term in subjects)
+        if names.either and not (denied or all_none) and link.phrase == INSIDE:
+            if all(term.kind is Kind.THE and term.is_place for term in names.terms):
+                among = tuple(term.words for term in names.terms)
+                return [replace(names.terms[0], kind=Kind.COUNT, among=among)]
         if names.denied or (names.either and not (denied or all_none)):
             raise unclear(names.terms[0])
         if any(term.kind is Kind.NO for term in names.terms):
@@ -452,6 +464,7 @@ class Discourse:
             else:
                 self._add([above], phrase, False, written, below)
         self.subjects, self.object, self._denied = blocks[-1:], None, False
+        self._foot = blocks[0] if item.footed and item.place is None else None
         if item.place is not None:
             self.object = item.place
 

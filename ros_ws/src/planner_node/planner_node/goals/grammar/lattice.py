@@ -131,7 +131,8 @@ def _kinds(
     elif word[-1].isdigit() or ("-" in word and word.split("-")[-1].isdigit()):
         yield "NUMBERED", word, 0.0
     elif word not in alone and word[0].isalpha():
-        yield "UNKNOWN", word, _STRANGE
+        mends = len(meant) > 1
+        yield "SLIP" if mends else "UNKNOWN", word, _STRANGE + _MENDED * mends
 
 
 def _with_fillers(

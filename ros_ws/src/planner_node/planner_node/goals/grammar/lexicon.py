@@ -16,13 +16,13 @@ _WORDS: Final = """
 FILLER: please; kindly; hey; hi; hello; robot; ok; okay; thanks; thx; thank you; dear; sir; um; uh;
  er; erm; uhm; umm; hmm; hm; oh; ah; well; alright; right so; so; just; simply; really; actually;
  now; then; also; too; as well; first of all; second of all; basically; honestly; frankly; again;
- quickly; carefully; gently; slowly; asap; quick; pls; plz; pleas; cheers; today; very; certainly;
+ quickly; carefully; gently; slowly; asap; quick; pls; plz; pleas; cheers; today; very; certainly; very much; so much; much;
  of course; for me; for us; this time; perhaps; maybe; pretty please; thank you kindly;
  many thanks; thank you very much; thanks a lot; thank you ever so much; much obliged; if you please; if you can;
  if possible; if you would; if you like; if you don't mind; if you do not mind; if you could; would you;
  will you; could you; can you; when you can; when you have time; when you get a chance; in advance;
  for a moment; for now; somewhere; simply put; like so; as follows; as well please;
- literally; definitely; absolutely; totally; finally; lastly; firstly; secondly; thirdly; afterwards; after that; next ,; next :; in that order; in this order; at last; my dear; sweetheart; monsieur; strictly; neither more nor less; no more no less; no more and no less; no more nor less; and that's it; and that's all; always; at all times;
+ literally; definitely; absolutely; totally; finally; lastly; firstly; secondly; thirdly; afterwards; after that; next ,; next :; in that order; in this order; at last; my dear; dear sir or madam; sir or madam; to whom it may concern; yours faithfully; yours sincerely; yours truly; sincerely yours; faithfully; with best wishes; completely; greatly; immensely; enormously; most; ever so; so very; a great deal; in whichever stack you like; in whichever stack; in whatever stack; in whatever stack you like; wherever you like; wherever you want; no matter which stack; in some stack or other; whichever stack it is in; sweetheart; monsieur; strictly; neither more nor less; no more no less; no more and no less; no more nor less; and that's it; and that's all; always; at all times;
  in the end; at the end; in any case; anyway; after all; by the way; at once; immediately now;
  right now; right away; good morning; good afternoon; good evening; good day; morning; evening; bro; dude;
  mate; buddy; pal; boss; folks; guys; team; everyone; sweetie; darling; honey; love; yo; mister; madam;
@@ -45,12 +45,13 @@ NOR: nor
 COMMA: ,; -; :
 MARK: .; ?
 COLON: :; -; ,; .
+REALCOLON: :
 NOT: not; never; under no circumstances; at no time; by no means; in no case; on no account; no longer; not ever; nowhere
 THE: the; this; that; these; those; my; our; your; its; their
 A: a; an; some; any; another; at least one; at least a; one or more; a single=a
 EVERY: every; each; all; all of; each of; all the; each and every; any and all; every one of; every single; every last; all of the; each of the
 BOTH: both; both of
-NO: no; no more; not a; not one; not a single; not any; none of; none of the; zero; no single
+NO: no; neither of; neither one of; no more; not a; not one; not a single; not any; none of; none of the; zero; no single
 ALLBUT: except; except for; apart from; but; other than; besides; excluding; with the exception of; save; bar; barring; minus; but not; not counting; without
 ATLEAST: at least; at lest; min; minimum; minimum of; a minimum of; no fewer than; no less than; not fewer than; not less than; as few as
 ATMOST: at most; max; maximum; maximum of; a maximum of; no more than; not more than; no more then; up to; not more then; not more as; maximally; at the most
@@ -86,13 +87,14 @@ PLACENOUNS: stacks; places; towers; columns; piles; positions; spots; slots; loc
 NR: number; no; nr; num
 SIDE: left; leftmost=left; middle; center=middle; centre=middle; central=middle; right; rightmost=right; left-hand=left; right-hand=right; lefthand=left; righthand=right; left-most=left; right-most=right; left hand=left; right hand=right; far left=left; far right=right; middlemost=middle; outer left=left; outer right=right; extreme left=left; extreme right=right; left most=left; right most=right; far-left=left; far-right=right
 TABLE: table; floor; ground; tabletop; desk; surface; table top
-BE: is; are; be; being; been; stays; stay; stands; stand; standing; sits; sit; sitting; rests; resting; rest; lies; lie; lying; goes; go; going; comes; come; coming; belongs; belong; remains; remain; ends up; end up; ended up; ending up; winds up; wind up; perch; reside; resides; residing; live; lives; hang out; appear; appears; end; happen; finish; finishes; finish up; finishes up; land; lands; situate; wander; wanders; move; moves; hop; hops; jump; jumps; climb; climbs; 's; head; heads; travel; travels; follows; follow; at rest; wait; waits; looks best; looks good; looks nice; fits; gets; get
+BE: left standing; left sitting; left lying; is; are; be; being; been; stays; stay; stands; stand; standing; sits; sit; sitting; rests; resting; rest; lies; lie; lying; goes; go; going; comes; come; coming; belongs; belong; remains; remain; ends up; end up; ended up; ending up; winds up; wind up; perch; reside; resides; residing; live; lives; hang out; appear; appears; end; happen; finish; finishes; finish up; finishes up; land; lands; situate; wander; wanders; move; moves; hop; hops; jump; jumps; climb; climbs; 's; head; heads; travel; travels; follows; follow; at rest; wait; waits; looks best; looks good; looks nice; fits; gets; get
 PLACED: placed; put; moved; stacked; located; positioned; set; found; to be found; kept; seated; sat; stood; laid; perched; transferred; brought; relocated; shifted; arranged; built; piled; rested; situated; deposited; installed; delivered; returned; carried; seen; dropped; shown
 FLOAT: both; all; each; all three; all four; all five; all together; both of them; all of them
 PAST: was; were; had been; used to be; has been; have been; had; got
 MUST: should; shall; must; will; would; ought to; has to; have to; needs to; need to; had to; is to; are to; had better; wants to; want to; would like to; likes to; is supposed to; are supposed to; is meant to; are meant to; gotta; is required to; are required to; gets to; deserves to; loves to; would love to; to; must to; should to; better; is going to; are going to; is due to; wishes to; has got to; have got to
 NEEDNOT: has to; have to; need; needs to; need to; had to; is required to; are required to; bother; have
-MAY: may; can; could; might; allowed; permitted; allowed to; permitted to; supposed to; welcome to; free to; permitted; able to
+MAY: may; might; allowed; permitted; allowed to; permitted to; supposed to; welcome to; free to; permitted; able to
+CAN: can; could
 DO: do; does; did
 THERE: there; here
 PUT: put; place; move; set; get; bring; lay; drop; leave; keep; shift; push; slide; transfer; arrange; build; balance; sit; make; let; have; relocate; stick; add; pop; plop; plonk; chuck; dump; shove; hoist; distribute; rearrange; spread; organize; organise; reorganize; create; form; construct; assemble; give; give me; give us; show; show me; load; deposit; carry; stack; pile; pile up; rest; position; locate; stash; park; install; mount; throw; toss; deliver; hand; station; situate; insert; send; pass; haul; haul over; carry over; bring over; move over; take; stand; gather; collect; group; assign; put down; set down; lay down; drop off; situate; return; lean; nestle; plant; place down; get me; make me; hold; seat; perch; keep hold of; position down; transport; settle; dispatch; re-stack; restack; stow; line up; tuck; fit; squeeze; wedge in; lob; whack; bung; slap; slot in; superimpose; hop; flip; roll; house; store; lodge; leave me; bring me; find me; layer; raise; lower; tidy; sort; clump; unite; combine; join
@@ -102,10 +104,23 @@ TAKE: take; grab; lift; pick; pick up; fetch; grasp; get; use; find; locate; go 
 OFF: off; off of; from; out of; from on top of; from off; from the top of; off the top of; from out of; out from; from in; from inside; down from; up off; up from; from above; from atop
 CARRY: supports; carries; holds; support; carry; hold; bears; bear; carrying; supporting; holding; bearing
 CLEARS: clear; empty; vacate; uncover; free up; clear off; clear out; clean off; free; clear up; empty out; evacuate; expose; bare; clean; clear away; strip; clean out; clean up; tidy up; unblock; unbury
-CLEAR: clear; empty; free; bare; vacant; unoccupied; uncovered; clean; exposed; unobstructed; clear on top; free on top; empty on top; deserted; uncluttered; blank; visible from above; open on top; bare on top; topless; unburdened; untouched on top; with nothing on top; with nothing on it; with nothing in it
+CLEAR: cleared; cleared out; emptied; emptied out; vacated; cleared off; cleaned; cleaned out; cleared away; freed; freed up; clear; empty; free; bare; vacant; unoccupied; uncovered; clean; exposed; unobstructed; clear on top; free on top; empty on top; deserted; uncluttered; blank; visible from above; open on top; bare on top; topless; unburdened; untouched on top; with nothing on top; with nothing on it; with nothing in it
 HAS: has; have; contains; contain; holds; hold; containing; includes; include; having; houses; house; gets; get; with; receives; receive; accommodates; accommodate; hosts; host; consists of; consist of; is made of; is made up of; comprises; comprise; carries; carry; stores; store; features; feature; needs; need; wants; takes; take; keeps
 COVERED: covered by; topped by; covered with; topped with; crowned by; crowned with; occupied by
 COVER: cover; top; crown; cap
+EXCEED: exceed; be more than; go over; go above; have more than; exceeds; go beyond
+REMOVE: remove; take off; get rid of; take away; lift off; clear away; clear off; lift away; move away; take down; move
+WHATIS: whatever is; whatever 's; what is; what 's; everything that is; anything that is; all that is; everything which is; everything; anything; whatever; all; all the blocks; all blocks; the blocks; the block; the stuff; whatever stands; whatever sits
+COMEOFF: come off; go; go away; come down; be removed; get off; be taken off; be cleared away; be moved away; be moved
+NUMBEROF: number of; count of; amount of
+STARTWITH: start with; begin with; start from; start
+ADD: add; continue with; next add; put
+FINISHWITH: finish with; end with; finish off with; top it off with; top off with; finally; conclude with; close with
+THAN: than
+THROUGH: through; thru; up to; to
+DARE: dare; you dare; ever; ever dare; even think of; think of; even think about; think about
+NOTTHECASE: not the case; not to be; never the case
+PLEASEME: please me; delight me; make me happy; make my day; mean a lot; help; help me; suit me; suit us; please us; be my pleasure; make us happy; be a great help; help us; help a lot; be a relief
 SUPPORTED: supported by; carried by; held by; held up by
 FIRST: first; to start with; to begin with; initially; at first
 LASTLY: last; finally; lastly
@@ -126,8 +141,8 @@ TOWER: tower; pile; stack; column; heap; pillar; totem; skyscraper
 ROWNOUN: row; line; sequence; order; series; lineup
 UPWARDS: from bottom to top; bottom to top; from the bottom up; from the bottom to the top; bottom up; bottom first; from bottom up; from the bottom; starting from the bottom; starting at the bottom; lowest first; upwards; beginning at the bottom; in order from bottom to top; from the ground up; from base to top; base to top; starting at the base; going up; from low to high; read from the bottom; upward; bottom-up; bottom-to-top; from the base up; bottom to the top; counting from the bottom; ordered from bottom to top
 DOWNWARDS: from top to bottom; top to bottom; from the top down; from the top to the bottom; top down; top first; from top down; from the top; starting from the top; starting at the top; from above; highest first; downwards; beginning at the top; in order from top to bottom; going down; from high to low; read from the top; downward; top-down; top-to-bottom; counting from the top; ordered from top to bottom
-RIGHTWARDS: from left to right; left to right; from the left to the right; from the left; starting from the left; left first; going right; in order from left to right; ordered from left to right; left-to-right
-LEFTWARDS: from right to left; right to left; from the right to the left; from the right; starting from the right; right first; going left; in order from right to left; right-to-left
+RIGHTWARDS: from left to right; left to right; from the left to the right; starting from the left; left first; going right; in order from left to right; ordered from left to right; left-to-right
+LEFTWARDS: from right to left; right to left; from the right to the left; starting from the right; right first; going left; in order from right to left; right-to-left
 ATTOP: on top; at the top; at top; on the top; at the very top; on the very top; on the tippy top; at the tippy top; at the peak; as the top; as its top; on the very top of it all; on top of it all; up top; right on top; right at the top; at the tip; on very top; tops it
 TOPOF: at the top of; the top of; at the very top of; top of; the very top of; at top of; on the very top of; the peak of
 INMIDDLE: in the middle; in between; in middle; middle; between them; between the two; as the middle; in the center; in the centre; sandwiched between; sandwiched in between
@@ -139,14 +154,14 @@ FROMLEFT: from the left; from left; counting from the left; counted from the lef
 FROMRIGHT: from the right; from right; counting from the right; counted from the right; on the right; from the right side; from the right-hand side; starting from the right; starting at the right
 I: i; we; me; us
 YOU: you
-WANT: want; wants; need; needs; would like; would love; would prefer; prefer; prefers; would want; would need; wish; wishes; ask for; am asking for; are asking for; asks for; asked for; request; requests; requested; require; requires; required; demand; demands; expect; expects; wanna; am needing; am looking for; are looking for; would appreciate; would rather have; am after; are after; would ask for; propose; suggest; proposes; suggests; would suggest; would propose; hope for; would be happy with; desire; desires; fancy; insist on; insists on; insist; insists; will have; would have; am wanting; would have liked; should like; should love; could use; could do with; must have; 'd; order; orders; am hoping for; hope; hopes; have to have; need to have; want to have; want to see; need to see; would like to see; would love to see; would like to have; would love to have; intend; intend to have; become; am trying to get; are aiming for; am aiming for; vote for; choose; opt for
+WANT: would rather have; would rather; want; wants; need; needs; would like; would love; would prefer; prefer; prefers; would want; would need; wish; wishes; ask for; am asking for; are asking for; asks for; asked for; request; requests; requested; require; requires; required; demand; demands; expect; expects; wanna; am needing; am looking for; are looking for; would appreciate; would rather have; am after; are after; would ask for; propose; suggest; proposes; suggests; would suggest; would propose; hope for; would be happy with; desire; desires; fancy; insist on; insists on; insist; insists; will have; would have; am wanting; would have liked; should like; should love; could use; could do with; must have; 'd; order; orders; am hoping for; hope; hopes; have to have; need to have; want to have; want to see; need to see; would like to see; would love to see; would like to have; would love to have; intend; intend to have; become; am trying to get; are aiming for; am aiming for; vote for; choose; opt for
 THINK: think; guess; suppose; believe; reckon; figure; feel; imagine; would say; say; should think; would think; was thinking; were thinking; have decided; decided; was wondering; know what i want; would guess; am thinking
 LOVEIT: would love it; would like it; would prefer it; would appreciate it; would be grateful; would be happy; would be glad; would be delighted; would be pleased; should be most obliged; would be obliged; would be much obliged; should be grateful; would be nice; would be great; would be so happy; would be thankful; would be very grateful; would be really happy; would be most grateful; would be super happy; would be thrilled; would be perfect
 ASK: ask; trouble; bother; beg; request; invite; urge; instruct; tell
 PERSONNOUN: boss; team; professor; doctor; friend; colleague; students; student; kids; children; class; customer; client; wife; husband; teacher; chef; director; manager; supervisor; mother; father; son; daughter; people; guests; folks; captain; nurse; surgeon; user; operator; examiner; audience; everyone; pupils; lab; experiment; task; drawing; recipe; specification; contract
-MAKESURE: see whether you can; try to get; make sure; ensure; see to it; see; take care; arrange; arrange things; arrange it; make it so; guarantee; confirm; verify; make certain; see about; check; be sure; arrange the blocks; arrange everything; rearrange the blocks; rearrange things; rearrange everything; reorganize the blocks; reorganise the blocks; move things around; move the blocks around; move the blocks; move blocks around; shuffle things around; make it; get it; fix it; set it up; set things up; set everything up; sort it out; organize it; organize things; organise things; do it; manage; distribute the blocks; place the blocks; put the blocks; stack the blocks; spread the blocks; spread the blocks out; spread them; spread them out; order the blocks; try; see if you can; try and see; remember; note; be careful; have it; help me; show me how; proceed; spread things; spread things out; leave things; leave it; get things; get everything; configure the blocks; configure things; reposition the blocks; tidy up
+MAKESURE: make it happen; make this happen; see whether you can; try to get; make sure; ensure; see to it; see; take care; arrange; arrange things; arrange it; make it so; guarantee; confirm; verify; make certain; see about; check; be sure; arrange the blocks; arrange everything; rearrange the blocks; rearrange things; rearrange everything; reorganize the blocks; reorganise the blocks; move things around; move the blocks around; move the blocks; move blocks around; shuffle things around; make it; get it; fix it; set it up; set things up; set everything up; sort it out; organize it; organize things; organise things; do it; manage; distribute the blocks; place the blocks; put the blocks; stack the blocks; spread the blocks; spread the blocks out; spread them; spread them out; order the blocks; try; see if you can; try and see; remember; note; be careful; have it; help me; show me how; proceed; spread things; spread things out; leave things; leave it; get things; get everything; configure the blocks; configure things; reposition the blocks; tidy up
 SOTHAT: so that; so; that; until; such that; in such a way that; in a way that; as such that; to the point where; so as; till
-GOOD: happy; glad; delighted; grateful; satisfied; pleased; thrilled; done; important; necessary; essential; crucial; vital; required; needed; imperative; desirable; desired; best; requested; time; critical; mandatory; preferable; preferred; great; nice; good; lovely; wonderful; perfect; fantastic; awesome; cool; better; super; ideal; splendid; helpful; swell; brilliant; fine; marvelous; marvellous; excellent; amazing; super important; very important; really important; absolutely necessary; paramount; compulsory; hereby requested; fabulous; fab; sweet; neat; dandy; a good idea; a pleasure; a treat; kind; terrific; ace; tops; appreciated; much appreciated
+GOOD: obliged; indebted; thankful; happy; glad; delighted; grateful; satisfied; pleased; thrilled; done; important; necessary; essential; crucial; vital; required; needed; imperative; desirable; desired; best; requested; time; critical; mandatory; preferable; preferred; great; nice; good; lovely; wonderful; perfect; fantastic; awesome; cool; better; super; ideal; splendid; helpful; swell; brilliant; fine; marvelous; marvellous; excellent; amazing; super important; very important; really important; absolutely necessary; paramount; compulsory; hereby requested; fabulous; fab; sweet; neat; dandy; a good idea; a pleasure; a treat; kind; terrific; ace; tops; appreciated; much appreciated
 GOAL: goal; task; aim; job; plan; target; objective; mission; order; instruction; final state; end state; target state; goal state; final arrangement; final configuration; target configuration; required end state; desired state; result; setup; arrangement; configuration; layout; request; idea; wish; required state; desired end state; desired result; desired configuration; desired arrangement; state; end result; outcome; assignment; final goal; target arrangement; final layout; target layout; exercise; final setup; challenge; brief; command; todo; to do; final result; desired outcome; goal configuration; end configuration; requirement; specification; spec; final order; stack; tower; vision; dream
 LET: let; let us; lets; have; make
 SWAP: swap; exchange; switch; interchange; trade; swop; switch around; swap around; flip; reverse
@@ -158,7 +173,7 @@ UPSIDEDOWN: upside down; over; around; on its head; upside-down; the other way u
 ASIS: as it is; as they are; as is; alone; where it is; where they are; unchanged; untouched; in place; as they were; as it was; where they stand; where it stands; the same; as before; undisturbed; unmoved; in its place; in their places; where it was; as it stands; as they stand; in peace; intact; in its current place; in their current places; in position; still; in their place; where it currently is; where they currently are; exactly where it is; exactly where they are; the way it is; the way they are; right where it is; right where they are; at its place; at their places
 KEEP: leave; keep; let; have
 DONTTOUCH: do not touch; do not move; do not disturb; do not change; do not alter; without moving; without touching; without disturbing; without changing; do not shift; don't touch; don't move; not touching; not moving
-DONTCARE: do not care about; do not matter; does not matter; is up to you; are up to you; is irrelevant; are irrelevant; is not important; are not important; do not mind about; is your choice; doesn't matter; don't matter; do not care; does not matter to me; do not matter to me; can go anywhere; can be anywhere; may be anywhere; may go anywhere; can stay wherever; can go wherever; goes anywhere; go anywhere; anywhere; can stand anywhere; is your call; are your call; can go wherever you like; can be wherever
+DONTCARE: wherever; do not care about; do not matter; does not matter; is up to you; are up to you; is irrelevant; are irrelevant; is not important; are not important; do not mind about; is your choice; doesn't matter; don't matter; do not care; does not matter to me; do not matter to me; can go anywhere; can be anywhere; may be anywhere; may go anywhere; can stay wherever; can go wherever; goes anywhere; go anywhere; anywhere; can stand anywhere; is your call; are your call; can go wherever you like; can be wherever
 ANYORDER: in any order; in whatever order; the order does not matter; order does not matter; in no particular order; any order; order irrelevant; the order is irrelevant; no matter in which order; the order is up to you; whichever order; in any order you like; no matter where; no matter which; no matter the order; no matter what order; regardless of order; in an arbitrary order; in arbitrary order; whatever the order; i do not care which; i do not care which ones; i do not care in which order; i do not care about the order; i do not care where; which ones does not matter; it does not matter which; does not matter which; does not matter where; anywhere; whichever; whichever ones; no matter which ones; order unimportant; the order is not important; any will do; any ones
 TALLEST: tallest; highest; biggest; largest; longest; fullest
 SHORTEST: shortest; lowest; smallest; emptiest; least tall
@@ -190,7 +205,7 @@ NOTTOUCH: touching
 HEIGHT: height; tallness
 BLOCKSOUT: blocks out; blocks out evenly; blocks; blocks evenly
 SATISFY: satisfy; fulfil; fulfill; meet; be
-LIKEWISE: likewise; as well; too; similarly
+LIKEWISE: also; likewise; as well; too; similarly
 SAMEFOR: same for; the same for; same goes for; likewise for; the same goes for; ditto for
 REVERSE: reverse; invert; upend; flip
 PERMITTED: permitted; allowed; acceptable; okay; ok; right; good
@@ -201,9 +216,9 @@ ITSELFIN: in it; in them; on them; in there; inside; inside it; on it; there
 FURTHEST: furthest; farthest; most
 ELSEWHERE: elsewhere; somewhere else; anywhere else; someplace else; away; to another place; to another stack; to a different place; to a different stack; in another stack; in a different stack; in another place; in a different place; on another stack; on a different stack; on another place; on a different place
 ONLY: only; solely; exclusively; just
-LETUS: let us; we would better; we had better; shall we; we had better; let me
+LETUS: let us; let us do; let us go with; let us go for; let us try; let us have; let us try and get; we would better; we had better; shall we; we had better; let me
 MODAL: can; could; would; will; may; might; shall
-MIND: mind; be so kind as to; be so kind and; be so good as to; be so kind to; be kind enough to; be good enough to; be able to; be willing to; manage to; try to; be a dear and; do me a favor and; do me a favour and; do me the favour and; be so nice to; be so nice and; be a darling and; be a sweetheart and; go ahead and; help me; possibly; be so nice as to; care to; trouble yourself to; go and; do it so that
+MIND: be persuaded to; be able to; be inclined to; mind; be so kind as to; be so kind and; be so good as to; be so kind to; be kind enough to; be good enough to; be able to; be willing to; manage to; try to; be a dear and; do me a favor and; do me a favour and; do me the favour and; be so nice to; be so nice and; be a darling and; be a sweetheart and; go ahead and; help me; possibly; be so nice as to; care to; trouble yourself to; go and; do it so that
 WHATIWANT: what i want; what i need; what i would like; what we want; what we need; all i want; all i need; all we need; all we want; what i'm after; what i am after; what i would like you to do; what i want you to do; all i ask; what i am trying to say; what i mean; what i would like to see; what we would like; what i'd like; what is wanted; what is needed; what needs to happen; what has to happen; what should happen; here is what i want; this is what i want; this is what i need; here is what i need; here is the plan; this is the plan; here is my wish; do it like this; do this; do the following; like this; the following
 IFNICE: if you could; if you would; if you can; if we could have; if we had; if; if you were to; if i could have; if i could get; if we could get; if i could see
 GIVENFOR: for; per; as per; according to; as; to satisfy; in accordance with; following; given; thanks to; on behalf of; in the name of; in honour of; on the orders of
@@ -257,6 +272,17 @@ MORE_COLORS: Final = frozenset({
     "plum", "lilac", "aqua", "azure", "bronze", "copper", "cream", "peach", "salmon", "violet",
     "gray", "grey",
 })  # fmt: skip
+#: Words that deny what stands beside them, so that nobody may leave them out.
+_BAD: Final = """
+ forbidden prohibited banned wrong false bad error mistake nonsense avoid cancel undo ignore
+ forget hypothetically supposedly allegedly except unless against contrary opposite reverse danger
+ dangerous illegal impossible refused refuse denied deny reject rejected abandon abort stop
+ previously formerly once usually sometimes rarely seldom hardly barely scarcely almost nearly
+ past history old before yesterday earlier hate hates doubt doubts dislike dislikes wrongly
+ instead unlike unwanted undesired none nope nah not no never nor neither joke joking kidding
+ anything-but bogus fake fail failed failure incorrect invalid untrue lie lies question
+"""
+BAD: Final = frozenset(_BAD.split())
 #: The kind of word that may be left out.
 FILLER: Final = "FILLER"
 NO_SLIPS: Final = frozenset(_NO_SLIPS.split())

@@ -73,11 +73,16 @@ class Mention:
 
 @dataclass(frozen=True)
 class Row:
-    """Names in their order: a tower from the bottom (``up``), a row from the left (``left``)."""
+    """Names in their order: a tower from the bottom (``up``), a row from the left (``left``).
+
+    Attributes:
+        footed: it was said which is at the bottom.
+    """
 
     predicate: str
     names: tuple[Term, ...]
     place: Term | None = None
+    footed: bool = False
 
 
 @dataclass(frozen=True)

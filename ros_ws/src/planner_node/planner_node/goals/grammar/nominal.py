@@ -69,7 +69,7 @@ def _strange(
     return words_of(a, *u, h[0] if h else None), bool(h and h[1])
 
 
-@rule("STRANGE", "w:UNKNOWN", "w:TWIN")
+@rule("STRANGE", "w:UNKNOWN", "w:SLIP", "w:TWIN")
 def _stranger(w: Word) -> Word:
     return w
 
@@ -165,6 +165,13 @@ def _none(n: tuple[Words, bool]) -> Term:
 @rule("TERM", "w:NOTHING")
 def _nothing(w: Word) -> Term:
     return term_of(words_of(w, text="block"), Kind.NO, least=0, most=0)
+
+
+@rule("TERM", "w:NOTHING a:COLOR", "w:EVERYTHING a:COLOR", "w:SOMETHING a:COLOR")
+def _thing_colored(w: Word, a: Word) -> Term:
+    if w.text.startswith(("no", "z")):
+        return term_of(words_of(a), Kind.NO, least=0, most=0)
+    return term_of(words_of(a), Kind.EVERY if w.text.startswith("every") else Kind.COUNT)
 
 
 @rule("TERM", "q:AMOUNT n:NAME", "q:SEVERAL 'of' THE n:NAME", "q:SEVERAL 'of' THE k:NUMBER n:NAME")
@@ -285,10 +292,8 @@ def _another(w: Word) -> Term:
     return term_of(words_of(w, text="block"), Kind.COUNT)
 
 
-@rule("TERM", "EVERY? THE? n:NAME WHICH BE NOT a:COLOR", "w:EVERYTHING WHICH BE NOT a:COLOR")
+@rule("TERM", "EVERY THE? n:NAME WHICH BE NOT a:COLOR", "THE n:NAME WHICH BE NOT a:COLOR", "w:EVERYTHING WHICH BE NOT a:COLOR")
 def _not_colored(a: Word, n: tuple[Words, bool] | None = None, w: Word | None = None) -> Term | None:
-    if n is not None and not n[1]:
-        return None
     words = n[0] if n else words_of(w, text="block")
     return term_of(words, Kind.EVERY, but=(term_of(words_of(a), Kind.EVERY),))
 
@@ -323,6 +328,11 @@ def _numbered(n: Word, k: Word) -> Term:
 def _some_place(n: Word) -> Term:
     """Asked back with the places that there are."""
     return term_of(words_of(n))
+
+
+@rule("PLACE", "THE s:SIDE 'one'", cost=0.6)
+def _side_one(s: Word) -> Term:
+    return term_of(words_of(s, text=f"{s.means} stack"))
 
 
 @rule("PLACE", "THE? w:NUMBERED")
@@ -375,7 +385,7 @@ def _place(p: Term) -> Term:
     return p
 
 
-@rule("TERM", "w:SOMETHING PLACENOUN", "w:SOMETHING PLACENOUNS", "w:A PLACENOUN")
+@rule("TERM", "w:A 'one' PLACENOUN", "w:A 'single' PLACENOUN", "w:SOMETHING PLACENOUN", "w:SOMETHING PLACENOUNS", "w:A PLACENOUN")
 def _any_place(w: Word) -> Term | None:
     if w.text in ("some", "another"):
         return None
@@ -557,6 +567,16 @@ def _places(n: Word, i: Word, j: Word, o: Word | None = None) -> Names | None:
         return None  # "two in stack 0 and one in stack 1"
     places = tuple(term_of(words_of(n, k, text=f"stack {k.means}")) for k in (i, j))
     return Names(places, either=o is not None)
+
+
+@rule("LISTED", "p:PLACE THROUGH q:PLACE", "THE? PLACENOUNS p:INDEX THROUGH q:INDEX")
+def _range(p: Term | Word, q: Term | Word) -> Names | None:
+    ends = [one.means if isinstance(one, Word) else (one.words.base or "")[5:] for one in (p, q)]
+    if not all(end.isdigit() for end in ends) or int(ends[0]) >= int(ends[1]):
+        return None
+    words = p.words if isinstance(p, Term) else words_of(p)
+    numbers = range(int(ends[0]), int(ends[1]) + 1)
+    return Names(tuple(term_of(replace(words, text=f"stack {number}")) for number in numbers))
 
 
 @rule("LISTED", "THE? i:SIDE AND THE? j:SIDE n:PLACENOUN", "THE? i:SIDE AND THE? j:SIDE n:PLACENOUNS")

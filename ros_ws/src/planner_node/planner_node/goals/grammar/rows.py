@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from scene_graph import LEFT, UP
 
 from ..terms import Term
@@ -48,7 +50,7 @@ def _order_sep() -> str:
     return ","
 
 
-@rule("HEADING", "PUT? A? NUMBER? TOWERNOUN HEADINGMORE?", "PUT? THE TOWERNOUN HEADINGMORE?", "PUT? THE ROWNOUN HEADINGMORE?", "THE ROWNOUN 'of' THE TOWERNOUN HEADINGMORE?", "PUT I A? TOWERNOUN HEADINGMORE?", "WHO WANT A? TOWERNOUN HEADINGMORE?", "PUT? A? ROWNOUN HEADINGMORE?", "PUT")
+@rule("HEADING", "PUT? A? NUMBER? TOWERNOUN HEADINGMORE?", "PUT? THE TOWERNOUN HEADINGMORE?", "PUT? THE ROWNOUN HEADINGMORE?", "THE ROWNOUN 'of' THE TOWERNOUN HEADINGMORE?", "ROWNOUN PAUSE?", "PUT I A? TOWERNOUN HEADINGMORE?", "WHO WANT A? TOWERNOUN HEADINGMORE?", "PUT? A? ROWNOUN HEADINGMORE?", "PUT")
 def _heading() -> str:
     return "heading"
 
@@ -86,7 +88,7 @@ def _row(
     return row_of(d[0], n if d[1] else n[::-1], p)
 
 
-@rule("PAUSE", "COMMA", "COLON", "MARK")
+@rule("PAUSE", "COMMA", "COLON", "MARK", "COMMA COLON")
 def _pause() -> str:
     return ":"
 
@@ -144,6 +146,21 @@ def _level_verb() -> str:
 
 @rule("LEVEL", "COMES? b:BLOCK", "b:BLOCK BE? NEXTUP", "NEXTUP BE? b:BLOCK", "b:BLOCK ABOVETHAT", "ABOVETHAT COMES? b:BLOCK", cost=0.4)
 def _then(b: Term) -> tuple[str, Term]:
+    return "then", b
+
+
+@rule("LEVEL", "STARTWITH b:BLOCK ATBOTTOM")
+def _started(b: Term) -> tuple[str, Term]:
+    return "bottom", b
+
+
+@rule("LEVEL", "FINISHWITH b:BLOCK ATTOP?")
+def _finished(b: Term) -> tuple[str, Term]:
+    return "top", b
+
+
+@rule("LEVEL", "ADD b:BLOCK ABOVETHAT", "ADD b:BLOCK NEXTUP")
+def _added(b: Term) -> tuple[str, Term]:
     return "then", b
 
 
@@ -206,7 +223,8 @@ def _leveled(
             ordered = (ordered[0], middle[0], ordered[1])
     if n and {term.words.text for term in n} != {term.words.text for term in ordered}:
         return None
-    return row_of(UP, ordered, p)
+    row = row_of(UP, ordered, p)
+    return row and replace(row, footed="bottom" in where)
 
 
 def _ordered(where: list[str], blocks: list[Term]) -> tuple[Term, ...] | None:

@@ -7,9 +7,13 @@ from dataclasses import replace
 
 from ..terms import Kind, Term
 from .clausal import Verb, relate
+from .lexicon import BAD
 from .lattice import Word
 from .meaning import Again, Change, Item, Mention, Names, Relate, Row, Take
 from .nominal import UPON, rule, words_of
+
+#: Ends of words that tell how something is, or was.
+_TELLING = ("ed", "en", "ly", "less", "ing", "ful")
 
 # Who wishes
 
@@ -19,7 +23,7 @@ def _who(w: Word | str) -> str:
     return "who"
 
 
-@rule("OTHERWORD", "w:UNKNOWN", "w:PERSONNOUN")
+@rule("OTHERWORD", "w:UNKNOWN", "w:PERSONNOUN", "w:SLIP")
 def _other_word(w: Word) -> Word:
     return w
 
@@ -29,7 +33,7 @@ def _known_person() -> str:
     return "who"
 
 
-@rule("PERSON", "THE? UNKNOWN", "THE? UNKNOWN UNKNOWN", "A UNKNOWN", "EVERY UNKNOWN", cost=1.0)
+@rule("PERSON", "THE? OTHERWORD", "THE? OTHERWORD OTHERWORD", "A OTHERWORD", "EVERY OTHERWORD", cost=1.0)
 def _person() -> str:
     return "who"
 
@@ -39,15 +43,15 @@ def _person() -> str:
 
 @rule("FRAME", "WHO WANT SEEING*", "WHO DO WANT SEEING*", "WHO MUST WANT SEEING*", "WHO MUST SEEING+", "WHO MUST MAKESURE SOTHAT?", "WHO MUST ASK YOU 'to'", "WHO ASK YOU 'to'", "MODAL WHO ASK YOU 'to'", "PUT IT COLON")
 @rule("FRAME", "MODAL YOU", "MODAL YOU MIND", "MODAL YOU MAKESURE SOTHAT?", "MODAL YOU SEEING+", "MODAL YOU MIND MAKESURE SOTHAT?")
-@rule("FRAME", "MIND", "MAKESURE COLON", "MAKESURE 'and'", "NUMBER HEADINGNOUNS COLON", "THANKSFOR", "MODAL WHO WANT SEEING*", "PUT 'it' LIKE A? UNKNOWN COLON", "THE ORDINAL TOWERNOUN? BE", "PUT? A? HEADINGNOUN 'of'", "THE GOAL")
-@rule("FRAME", "MODAL WHO SEEING*", "YOU MUST", "YOU MAY", "YOU 'to'", "YOU MUST MAKESURE SOTHAT?")
+@rule("FRAME", "MIND", "MAKESURE COLON", "MAKESURE 'and'", "NUMBER HEADINGNOUNS COLON", "THANKSFOR", "MODAL WHO WANT SEEING*", "PUT 'it' LIKE A? OTHERWORD COLON", "THE ORDINAL TOWERNOUN? BE", "PUT? A? HEADINGNOUN 'of'", "THE GOAL")
+@rule("FRAME", "MODAL WHO SEEING*", "YOU MUST", "YOU CAN", "YOU 'to'", "YOU MUST MAKESURE SOTHAT?")
 @rule("FRAME", "MAKESURE SOTHAT?", "MAKESURE 'to'", "PUT MAKESURE SOTHAT")
-@rule("FRAME", "'it' BE GOOD SEEING*", "'it' MUST BE GOOD SEEING*", "GOOD SOTHAT", "WHO BE GOOD SEEING*", "'it' MUST BE GOOD IFNICE YOU?", "'it' MUST BE GOOD IFNICE YOU MAY")
+@rule("FRAME", "'it' BE GOOD SEEING*", "'it' MUST BE GOOD SEEING*", "GOOD SOTHAT", "WHO BE GOOD SEEING*", "'it' MUST BE GOOD IFNICE YOU?", "'it' MUST BE GOOD IFNICE YOU CAN")
 @rule("FRAME", "MODAL 'it' BE 'possible' SEEING*", "BE 'it' 'possible' SEEING*", "DO YOU THINK YOU MODAL", "DO YOU THINK 'it' MODAL BE 'possible' SEEING*")
-@rule("FRAME", "THE? GOAL BE SEEING*", "THE? GOAL COLON", "THE? GOAL MUST SATISFY COLON?", "THE? GOAL GIVENS COLON", "THE? GOAL BE COLON", "THE? GOAL GIVENS BE SEEING*", "THE? GOAL WHO WANT BE COLON?")
-@rule("FRAME", "WHO LOVEIT IFNICE YOU?", "WHO LOVEIT IFNICE YOU MAY", "WHO LOVEIT SEEING+", "WHO LOVEIT 'it' IFNICE YOU?")
-@rule("FRAME", "WHO THINK SOTHAT?", "WHO THINK COMMA", "WHO THINK WHO MAY", "WHO THINK WHO WANT SEEING*", "WHO THINK WHO MAY SEEING+", "LETUS", "LETUS SEEING+", "LETUS MAKESURE SOTHAT?", "'how' 'about'", "'how' 'about' PUTTINGNOT")
-@rule("FRAME", "WHATIWANT BE? COLON?", "WHATIWANT BE SEEING+", "WHATIWANT GIVENS? COLON", "WHO BE 'wondering' IFNICE YOU MAY", "WHO PAST 'wondering' IFNICE YOU MODAL", "WHO THINK IFNICE YOU MODAL")
+@rule("FRAME", "THE? GOAL BE SEEING*", "THE? GOAL COLON", "THE? GOAL HAS", "WHO MUST BE GOOD IFNICE YOU? CAN?", "WHO BE GOOD IFNICE YOU? CAN?", "'it' MUST PLEASEME IFNICE YOU? CAN?", "THE? GOAL MUST SATISFY COLON?", "THE? GOAL GIVENS COLON", "THE? GOAL BE COLON", "THE? GOAL GIVENS BE SEEING*", "THE? GOAL WHO WANT BE COLON?")
+@rule("FRAME", "WHO LOVEIT IFNICE YOU?", "WHO LOVEIT IFNICE YOU CAN", "WHO LOVEIT SEEING+", "WHO LOVEIT 'it' IFNICE YOU?")
+@rule("FRAME", "WHO THINK SOTHAT?", "WHO THINK COMMA", "WHO THINK WHO CAN", "WHO THINK WHO WANT SEEING*", "WHO THINK WHO CAN SEEING+", "LETUS", "LETUS SEEING+", "LETUS MAKESURE SOTHAT?", "'how' 'about'", "'how' 'about' PUTTINGNOT")
+@rule("FRAME", "WHATIWANT BE? COLON?", "WHATIWANT BE SEEING+", "WHATIWANT GIVENS? COLON", "WHO BE 'wondering' IFNICE YOU CAN", "WHO PAST 'wondering' IFNICE YOU MODAL", "WHO THINK IFNICE YOU MODAL")
 @rule("FRAME", "MODAL YOU SHOWTHAT", "THE? STEP k:NUMBER COLON?", "k:NUMBER MARK", "STEP k:NUMBER COMMA", "ORDINALLY COMMA?", "PUT 'it' SOTHAT", "'try' 'to'", "PUT THE? PLURALS SOTHAT")
 @rule("FRAME", "GIVENS COMMA?", "GIVENS COLON", "WHO WANT A? HEADINGNOUN 'where'", "WHO WANT A? HEADINGNOUN WHEREIN", "PUT A? HEADINGNOUN WHEREIN", "PUT A? HEADINGNOUN COLON", "A? HEADINGNOUN COLON", "PUT A? HEADINGNOUN 'with'", "WHO WANT A? HEADINGNOUN 'with'", "PUT NUMBER HEADINGNOUNS COLON", "WHO WANT A? HEADINGNOUN COLON")
 def _frame(k: Word | None = None) -> bool:
@@ -56,7 +60,7 @@ def _frame(k: Word | None = None) -> bool:
 
 @rule("FRAME", "WHO DO NOT WANT SEEING*", "WHO MUST NOT WANT SEEING*", "WHO NOT WANT SEEING*", "AVOID SOTHAT", "MAKESURE NOT 'to'?", "MAKESURE 'to' NOT",
       "WHO MUST WANT YOU 'to' NOT", "WHO WANT YOU NOT 'to'", "WHO WANT YOU 'to' NOT", "'it' BE NOT PERMITTED SEEING*", "'it' MUST NOT BE SEEING+", "DO NOT LETTING", "YOU MUST NOT", "YOU MAY NOT",
-      "NOT LETTING", "WHO DO NOT THINK SOTHAT", "WHO DO NOT 'like' SEEING+", "WHO MUST NOT 'like' SEEING*", "'without'", "'it' BE GOOD SOTHAT NOT", "'it' BE GOOD NOT 'to'", "DO NOT PUT 'it' SOTHAT", "NEVERMAY", "NOTTIME MUST", "NOTTIME MAY")  # fmt: skip
+      "NOT LETTING", "'it' BE NOTTHECASE SOTHAT", "'it' MUST BE NOTTHECASE SOTHAT", "WHO DO NOT THINK SOTHAT", "WHO DO NOT 'like' SEEING+", "WHO MUST NOT 'like' SEEING*", "'without'", "'it' BE GOOD SOTHAT NOT", "'it' BE GOOD NOT 'to'", "DO NOT PUT 'it' SOTHAT", "NEVERMAY", "NOTTIME MUST", "NOTTIME CAN")  # fmt: skip
 def _frame_denied() -> bool:
     return True
 
@@ -152,12 +156,12 @@ def _with_suffix(c: Item) -> Item:
     return c
 
 
-@rule("FRAMED2", "f:FRAME c:CLAUSE", "f:FRAME c:WISHED", "c:CLAUSE", "c:WISHED", "f:FRAME c:ROW", "c:ROW", "IFNICE YOU? MAY? c:CLAUSE", "IFNICE YOU MODAL c:CLAUSE", "IFNICE c:WISHED")
+@rule("FRAMED2", "f:FRAME c:CLAUSE", "f:FRAME c:WISHED", "c:CLAUSE", "c:WISHED", "f:FRAME c:ROW", "c:ROW", "IFNICE YOU? CAN? c:CLAUSE", "IFNICE YOU MODAL c:CLAUSE", "IFNICE c:WISHED")
 def _to_suffix(c: Item, f: bool = False) -> Item | None:
     return _under(f, c)
 
 
-@rule("SUFFIX", "MUST BE GOOD", "'that' MUST BE GOOD", "'it' MUST BE GOOD", "BE WHATIWANT", "AND WHO MUST BE GOOD", "COMMA AND WHO MUST BE GOOD", "'that' BE WHATIWANT", "AND WHO MUST BE UNKNOWN", "BE THE? GOAL", "'that' BE THE? GOAL", "WHO LOVEIT", "WHO MUST BE GOOD", "ANYORDER", "WHO WANT", "WHO THINK", "'that' MUST BE UNKNOWN", "BE MUST", "'if' 'it' BE GOOD", "'that' BE GOOD")
+@rule("SUFFIX", "MUST BE GOOD", "'that' MUST BE GOOD", "'it' MUST BE GOOD", "BE WHATIWANT", "AND WHO MUST BE GOOD", "COMMA AND WHO MUST BE GOOD", "'that' BE WHATIWANT", "AND WHO MUST BE OTHERWORD", "BE THE? GOAL", "'that' BE THE? GOAL", "WHO LOVEIT", "WHO MUST BE GOOD", "ANYORDER", "WHO WANT", "WHO THINK", "'that' MUST BE OTHERWORD", "BE MUST", "'if' 'it' BE GOOD", "'that' BE GOOD")
 def _suffix() -> str:
     return ""
 
@@ -165,7 +169,7 @@ def _suffix() -> str:
 # What says nothing
 
 
-@rule("IDLE", "FILLEDOUT", "OTHERS DONTCARE", "w:ANYORDER", "'i' DONTCARE OTHERS", "SUFFIX", "KEEPING", "SPREADOUT")
+@rule("IDLE", "FILLEDOUT", "OTHERS DONTCARE", "w:ANYORDER", "'i' DONTCARE OTHERS", "DONTCARE OTHERS", "KEEP BLOCK DONTCARE", "SUFFIX", "KEEPING", "SPREADOUT")
 def _idle(w: Word | None = None) -> str:
     return "idle"
 
@@ -324,6 +328,26 @@ def _last(i: tuple[Item, ...]) -> tuple[Joined, ...]:
     return (("", i),)
 
 
+@rule("ASIDEWORD", "w:UNKNOWN", "w:PERSONNOUN", "w:STEP", "w:GOAL", "w:NOUNS")
+def _aside_word(w: Word) -> Word | None:
+    """What names something else, not what says that it is, or is not, so."""
+    return None if w.text in BAD or w.text.endswith(_TELLING) else w
+
+
+@rule("ASIDE", "THE? ASIDEWORD", "A? ASIDEWORD ASIDEWORD?", "NUMBER ASIDEWORD", "THE? ASIDEWORD OFOF THE? ASIDEWORD", "ASIDEWORD AND ASIDEWORD")
+def _aside() -> str:
+    return ""
+
+
+@rule("ITEMS", "ASIDE REALCOLON r:ITEMS", "ASIDE REALCOLON COMMA r:ITEMS", cost=1.0)
+@rule("ITEMS", "PERSONNOUN COMMA r:ITEMS", cost=0.5)
+@rule("ITEMS", "i:ITEM SEP ASIDE ENDMARK*", cost=1.5)
+def _beside_aside(
+    r: tuple[Joined, ...] = (), i: tuple[Item, ...] = ()
+) -> tuple[Joined, ...]:
+    return r or (("", i),)
+
+
 @rule("ITEMS", "LETSBUILD s:SEP r:ITEMS")
 def _heading_first(s: str, r: tuple[Joined, ...]) -> tuple[Joined, ...]:
     return r
@@ -386,7 +410,7 @@ def _or(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...]:
     return (("", i), ("or", r[0][1]), *r[1:])
 
 
-@rule("TEXT", "START ENDMARK* AND? r:ITEMS", "START ENDMARK* 'sorry' COMMA? r:ITEMS")
+@rule("TEXT", "START ENDMARK* AND? r:ITEMS", "START ENDMARK* 'sorry' COMMA? r:ITEMS", "START ENDMARK* 'oops' COMMA? r:ITEMS", "START ENDMARK* 'wait' COMMA? 'no'? COMMA? r:ITEMS")
 def _text(r: tuple[Joined, ...]) -> tuple[Joined, ...]:
     return r
 
