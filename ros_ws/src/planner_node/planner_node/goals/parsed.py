@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import permutations
 
 from scene_graph import ABOVE, LEFT, PREDICATES, UP, Phrase
@@ -62,18 +62,6 @@ class Parsed:
         for item in self.readings[0]:
             found += item.terms if isinstance(item, Changed) else (item.subject, item.object)
         return tuple(found)
-
-
-def counted(subjects: Sequence[Term]) -> list[Term] | None:
-    """ "two of red, blue and green" as one number of these; None: it is not clear who they are."""
-    if not any(term.listed for term in subjects):
-        return list(subjects)
-    if any(term.listed or term.kind is not Kind.THE for term in subjects[1:]):
-        return None
-    if len(subjects) < 2 or subjects[0].least > len(subjects):
-        return None
-    among = tuple(term.words for term in subjects)
-    return [replace(subjects[0], listed=False, among=among)]
 
 
 def in_one_place(blocks: Sequence[Term], same: bool, denied: bool) -> list[ParsedRelation] | None:

@@ -11,7 +11,7 @@ from typing import Final
 from scene_graph import COLORS, PREDICATES, SHAPES, Phrase
 
 from .lexicon import FILLER, MORE_COLORS, NO_SLIPS, entries
-from .slips import mended
+from ..slips import mended
 from .tokens import Token
 
 #: What it costs to leave a word out, a comma beside such a word, to mend a word, and to take one

@@ -10,7 +10,7 @@ from scene_graph import PREDICATES
 
 from ...errors import InvalidGoalError, PlannerError
 from ..parsed import Changed, Parsed, Said
-from ..said import EXAMPLE, no_relation
+from ..example import EXAMPLE, no_relation
 from ..terms import Kind, Words
 from . import clausal, relational, rows, sentences  # noqa: F401  their rules
 from .discourse import Discourse
