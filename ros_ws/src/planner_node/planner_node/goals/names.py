@@ -14,9 +14,9 @@ from scene_graph import (
 )
 
 from ..errors import AmbiguousObjectError, UnknownObjectError
+from .example import EXAMPLE
 from .language import NOUNS, SYNONYMS
 from .resolve_places import is_place_word, place_named, unknown_place
-from .example import EXAMPLE
 from .slips import mended
 from .terms import Words
 
@@ -50,12 +50,12 @@ def fitting_names(words: Words, names: Sequence[str], stack_count: int | None) -
     by_full_name = {name.lower(): name for name in names}
     known = {part for name in by_full_name for part in name.split("_")}
     parts = [part for part in re.split(r"[ _-]+", words.text) if part]
-    for mended in (parts, _mended(parts, known)):
-        if "_".join(mended) in by_full_name:
-            return [by_full_name["_".join(mended)]]
-        wanted = {part if part in known else SYNONYMS.get(part, part) for part in mended} - NOUNS
+    for right in (parts, _mended(parts, known)):
+        if "_".join(right) in by_full_name:
+            return [by_full_name["_".join(right)]]
+        wanted = {part if part in known else SYNONYMS.get(part, part) for part in right} - NOUNS
         candidates = sorted(name for name in names if wanted <= set(name.lower().split("_")))
-        if candidates and mended:
+        if candidates and right:
             return candidates
     if is_place_word(words.text):
         raise unknown_place(words, stack_count)

@@ -56,11 +56,18 @@ class Parsed:
     readings: tuple[tuple[Said, ...], ...]
 
     @property
-    def terms(self) -> tuple[Term, ...]:
-        """All names and numbers of the first reading."""
-        found: list[Term] = []
+    def block_names(self) -> tuple[Words, ...]:
+        """The blocks that the first reading names one by one."""
+        found: list[Words] = []
         for item in self.readings[0]:
-            found += item.terms if isinstance(item, Changed) else (item.subject, item.object)
+            terms = item.terms if isinstance(item, Changed) else (item.subject, item.object)
+            for term in terms:
+                others = term.described.others if term.described is not None else ()
+                found += [
+                    one.words
+                    for one in (*others, *(() if term.described else (term,)))
+                    if one.kind is Kind.THE and not one.is_place
+                ]
         return tuple(found)
 
 

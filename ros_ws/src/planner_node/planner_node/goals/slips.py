@@ -9,6 +9,8 @@ from functools import lru_cache
 
 from scene_graph import COLORS
 
+from .grammar.lexicon import NO_SLIPS
+
 #: How many words one may be meant to be.
 _MOST = 4
 
@@ -20,6 +22,8 @@ def mended(word: str, known: frozenset[str]) -> tuple[str, ...]:
     Two letters may be exchanged, or one doubled, in any word, and vowels left out; in four to six
     letters one may be wrong, and two in more.
     """
+    if word in NO_SLIPS or not word.isalpha():
+        return ()
     if short := _shortened(word):
         return (short,)
     near: dict[float, set[str]] = {}
@@ -29,7 +33,11 @@ def mended(word: str, known: frozenset[str]) -> tuple[str, ...]:
             continue
         if _harmless(word, other):
             near.setdefault(0.5, set()).add(other)
-        elif (len(other) > 3 or other in COLORS) and word[0] == other[0] and _vowelless(word) == _vowelless(other):
+        elif (
+            (len(other) > 3 or other in COLORS)
+            and word[0] == other[0]
+            and _vowelless(word) == _vowelless(other)
+        ):
             near.setdefault(0.8, set()).add(other)
         elif len(word) == 3 and other[:-1] == word:
             near.setdefault(1.0, set()).add(other)

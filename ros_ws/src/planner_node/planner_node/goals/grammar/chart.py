@@ -45,19 +45,11 @@ class Grammar:
         self._rules: dict[str, list[_Rule]] = {}
         self._first: dict[str, frozenset[str]] = {}
 
-    def rule(
-        self, category: str, *sides: str, cost: float = 0.0
-    ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-        """Adds rules whose meaning the decorated function builds."""
-
-        def add(build: Callable[..., Any]) -> Callable[..., Any]:
-            for side in sides:
-                parts = tuple(map(_part, side.split()))
-                self._rules.setdefault(category, []).append(_Rule(parts, build, cost))
-            self._first.clear()
-            return build
-
-        return add
+    def add(self, category: str, side: str, build: Callable[..., Any], cost: float = 0.0) -> None:
+        """Adds a rule, with the function that builds its meaning."""
+        parts = tuple(map(_part, side.split()))
+        self._rules.setdefault(category, []).append(_Rule(parts, build, cost))
+        self._first.clear()
 
     def parses(self, category: str, lattice: Lattice, start: int = 0) -> list[Found]:
         """All readings from a word on, the cheapest first."""

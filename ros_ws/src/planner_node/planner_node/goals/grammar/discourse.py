@@ -67,11 +67,15 @@ class Discourse:
                 raise _unclear_words(item.links[0].words)
             row = isinstance(item, Row)
             if isinstance(item, Relate):
-                if fronted and item.bare and not any(
-                    term.is_place
-                    for link in item.links
-                    if link.names
-                    for term in link.names.terms
+                if (
+                    fronted
+                    and item.bare
+                    and not any(
+                        term.is_place
+                        for link in item.links
+                        if link.names
+                        for term in link.names.terms
+                    )
                 ):
                     raise _unclear_words(item.links[0].words)  # is it in that place as well?
                 fronted = item.fronted
@@ -185,33 +189,11 @@ class Discourse:
         denied = item.denied
         if item.subject is not None and item.subject.denied:
             denied = not denied
-        none = bool(subjects) and all(term.kind is Kind.NO for term in subjects)
-        if none and any(link.denied for link in item.links):
-            raise unclear(subjects[0])
-        open_links = [link for link in item.links if not link.denied]
-        if denied and len(item.links) > 1 and (
-            len(open_links) < len(item.links)
-            or any(link.how != "or" for link in item.links[:-1])
-        ):
-            # Not on blue and not left of green, or not both?
-            if not (len(item.links) == 2 and item.links[1].chained):
-                raise _unclear_words(item.links[1].words)
-        if not (denied or none) and any(link.how == "or" for link in item.links) and not all(
-            link.denied for link in item.links
-        ):
-            first_denied = item.links[0].denied
-            if not first_denied:
-                raise _unclear_words(item.links[0].words)
-            item = replace(
-                item, links=tuple(replace(link, denied=True) for link in item.links)
-            )
+        links = _scoped(item.links, denied, all(term.kind is Kind.NO for term in subjects))
         if len(subjects) > 1 and item.subject is not None and item.subject.either and not denied:
             raise unclear(subjects[0])
-        self._check_chain(subjects, item.links)
-        if len(item.links) > 1 and denied and item.links[1].chained:
-            # "red must not be on blue in stack 1"
-            raise _unclear_words(item.links[1].words)
-        for link in item.links:
+        self._check_chain(subjects, links)
+        for link in links:
             if link.chained:
                 subjects = [self.object] if self.object else subjects
             self._link(subjects, link, denied != link.denied, item, carried)
@@ -290,10 +272,10 @@ class Discourse:
             pairs = [[*subjects, other] for other in others] if denied and others else [blocks]
             found = []
             for pair in pairs:
-                one = in_one_place(pair, how == "same", denied)
-                if one is None:
+                relations = in_one_place(pair, how == "same", denied)
+                if relations is None:
                     raise _unclear_words(written)
-                found += one
+                found += relations
             self.relations += found
             self._name(*blocks)
             self.subjects, self.object = blocks[:1], others[-1] if others else None
@@ -354,10 +336,10 @@ class Discourse:
         assert link.names is not None and link.phrase is not None
         names = link.names
         all_none = all(term.kind is Kind.NO for term in subjects)
-        if names.either and not (denied or all_none) and link.phrase == INSIDE:
-            if all(term.kind is Kind.THE and term.is_place for term in names.terms):
-                among = tuple(term.words for term in names.terms)
-                return [replace(names.terms[0], kind=Kind.COUNT, among=among)]
+        places = all(term.kind is Kind.THE and term.is_place for term in names.terms)
+        if names.either and places and link.phrase == INSIDE and not (denied or all_none):
+            among = tuple(term.words for term in names.terms)
+            return [replace(names.terms[0], kind=Kind.COUNT, among=among)]
         if names.denied or (names.either and not (denied or all_none)):
             raise unclear(names.terms[0])
         if any(term.kind is Kind.NO for term in names.terms):
@@ -386,9 +368,9 @@ class Discourse:
             raise _unclear_words(link.words)
         upon = link.words.text.startswith(("on", "up", "right on"))
         spoken = self.subjects[0] if len(self.subjects) == 1 else None
-        if link.names is None and upon and spoken is not None and spoken.kind is Kind.THE:
-            if spoken.words.text != subjects[0].words.text:
-                raise unclear(subjects[0])  # "red in stack1, blue on top": of it, or of the stack?
+        other = spoken is not None and spoken.words.text != subjects[0].words.text
+        if link.names is None and upon and other and spoken and spoken.kind is Kind.THE:
+            raise unclear(subjects[0])  # "red in stack1, blue on top": of it, or of the stack?
         bottom = link.how == "bottom"
         phrase = UPON if bottom else INSIDE
         self._add(subjects, phrase, False, link.words, place)
@@ -607,6 +589,26 @@ class Discourse:
         if found is None:
             raise unclear(one)
         self.relations.append(found)
+
+
+def _scoped(links: tuple[Link, ...], denied: bool, none: bool) -> tuple[Link, ...]:
+    """Links with what is denied of them all; raises InvalidGoalError where it is not clear.
+
+    Args:
+        denied: it is denied that the subject has them.
+        none: that there is no such subject.
+    """
+    first, *others = links
+    ways = {link.how == "or" for link in links[:-1]}
+    if (denied and others and ways != {True}) or ((denied or none) and any(
+        link.denied for link in links
+    )):  # fmt: skip
+        raise _unclear_words(links[-1].words)  # not on blue and not on green, or not on both?
+    if denied or none or True not in ways:
+        return links
+    if not first.denied:
+        raise _unclear_words(first.words)
+    return tuple(replace(link, denied=True) for link in links)
 
 
 def _unclear_words(words: Words) -> InvalidGoalError:

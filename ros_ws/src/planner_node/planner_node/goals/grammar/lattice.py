@@ -10,8 +10,8 @@ from typing import Final
 
 from scene_graph import COLORS, PREDICATES, SHAPES, Phrase
 
-from .lexicon import FILLER, MORE_COLORS, NO_SLIPS, entries
 from ..slips import mended
+from .lexicon import ENTRIES, FILLER, MORE_COLORS
 from .tokens import Token
 
 #: What it costs to leave a word out, a comma beside such a word, to mend a word, and to take one
@@ -48,8 +48,9 @@ _Index = dict[str, list[tuple[str, tuple[str, ...], str, Phrase | None]]]
 @lru_cache(maxsize=4)
 def _index(phrases: tuple[tuple[tuple[str, ...], Phrase], ...]) -> _Index:
     index: _Index = {}
-    for kind, words, means in entries():
-        index.setdefault(words[0], []).append((kind, words, means, None))
+    for kind, listed in ENTRIES.items():
+        for words, means in listed:
+            index.setdefault(words[0], []).append((kind, words, means, None))
     for color in (*COLORS, *MORE_COLORS):
         index.setdefault(color, []).append(("COLOR", (color,), color, None))
     for words, phrase in phrases:
@@ -72,7 +73,9 @@ def lattice_of(tokens: Sequence[Token], literals: Collection[str]) -> Lattice:
     for start, token in enumerate(tokens):
         here: dict[str, list[tuple[int, Word, float]]] = {}
         skips: list[tuple[int, float]] = []
-        for kind, entry, means, phrase in (one for said in words[start] for one in index.get(said, ())):
+        for kind, entry, means, phrase in (
+            one for said in words[start] for one in index.get(said, ())
+        ):
             matched = _matched(words, start, entry)
             if matched is None:
                 continue
@@ -96,7 +99,7 @@ def lattice_of(tokens: Sequence[Token], literals: Collection[str]) -> Lattice:
 def _meant(word: str, known: frozenset[str], alone: Collection[str]) -> dict[str, float]:
     """What a word may be, and at what cost."""
     found = {word: 0.0}
-    if word not in alone and word not in NO_SLIPS and word.isalpha():
+    if word not in alone:
         found |= dict.fromkeys(mended(word, known - {word}), _MENDED)
     return found
 

@@ -29,9 +29,11 @@ class Link:
     """A relation to something, without its subject.
 
     Attributes:
-        how: what it is where it is no phrase: ``top``, ``bottom``, ``middle`` (of ``names``, or of
-            what was spoken of), ``there``, ``alone``, ``clear``, ``each other``, ``same``, ``different`` (as
-            ``names``, or among themselves), ``side`` (a phrase, but of a side), ``where`` (another one is now), ``elsewhere``.
+        how: what it is where it is no phrase: ``top``, ``bottom`` (of ``names``, or of what was
+            spoken of), ``side`` (a phrase, but of a side), ``there``, ``alone``, ``clear``,
+            ``each other``, ``same``, ``different`` (in one place as ``names``, or as one another),
+            ``where`` (another one is now), ``elsewhere``; ``or`` of one that may hold as well as
+            the next.
         adjacent: the places are neighbours too: "directly left of".
         chained: its subject is the object of the link before.
     """

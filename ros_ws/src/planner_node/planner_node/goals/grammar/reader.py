@@ -9,13 +9,12 @@ from typing import Any, Final
 from scene_graph import PREDICATES
 
 from ...errors import InvalidGoalError, PlannerError
-from ..parsed import Changed, Parsed, Said
 from ..example import EXAMPLE, no_relation
+from ..parsed import Changed, Parsed, Said
 from ..terms import Kind, Words
-from . import clausal, relational, rows, sentences  # noqa: F401  their rules
 from .discourse import Discourse
 from .lattice import lattice_of
-from .nominal import GRAMMAR
+from .rules import GRAMMAR
 from .sentences import Joined
 from .tokens import Token, tokens_of
 
