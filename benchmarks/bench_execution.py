@@ -11,7 +11,6 @@ Writes ``benchmarks/results/execution.json``.
 
 from __future__ import annotations
 
-import argparse
 import statistics
 import time
 from pathlib import Path
@@ -19,9 +18,9 @@ from typing import Any, Final
 
 import numpy as np
 import pybullet_data
-from kept_results import kept
+from kept_results import FIRST_SEED, kept, options
 from motion_scenes import random_moves
-from results_file import Row, print_rows, quick, write_result
+from results_file import Row, print_rows, write_result
 from tamp_runtime.motion_report import ArmPlace, MotionState
 from tqdm import tqdm
 from watched_world import Stop, carry_out, tilt
@@ -32,7 +31,6 @@ from sim_node.ground_truth import true_scene_graph
 from sim_node.layouts import random_layout
 from sim_node.world import World
 
-FIRST_SEED: Final = 1000
 #: A block that was moved makes towers of 1 to so many.
 HIGHEST: Final = 7
 #: Blocks and moves of plans that are stopped.
@@ -167,11 +165,7 @@ def stop_rows(found: list[dict[str, Any]]) -> list[Row]:
 
 def main() -> None:
     """Measures, prints and writes."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seed", type=int, default=FIRST_SEED, help="first one; to tune: not 1000")
-    parser.add_argument("--n", type=int, default=14 if quick() else 200)
-    parser.add_argument("--resume", action="store_true", help="keep the results so far")
-    arguments = parser.parse_args()
+    arguments = options(__doc__, 200, 14)
     start, bench, resume = time.perf_counter(), Bench(), arguments.resume
     seeds = range(arguments.seed, arguments.seed + arguments.n)
     moved = [

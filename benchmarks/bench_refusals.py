@@ -9,7 +9,6 @@ that was stopped can be taken up again. Writes ``benchmarks/results/refusals.jso
 
 from __future__ import annotations
 
-import argparse
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -17,10 +16,10 @@ from typing import Final
 
 import numpy as np
 import pybullet_data
-from kept_results import kept
+from kept_results import FIRST_SEED, kept, options
 from obstacle_oracle import ObstacleOracle
 from refusal_tables import KINDS, Refused, followed
-from results_file import Row, print_rows, quick, wilson_interval, write_result
+from results_file import Row, print_rows, wilson_interval, write_result
 from tqdm import tqdm
 
 from motion_node.blocks import read_scene
@@ -31,7 +30,6 @@ from motion_node.nlp.compiled import finish
 from motion_node.obstacles import Obstacle
 from motion_node.planner import MotionPlanner
 
-FIRST_SEED: Final = 1000
 #: Problems are built for so many obstacles.
 MOST: Final = 4
 FOLDER: Final = "refusals"
@@ -160,11 +158,7 @@ def rows_of(results: list[Result]) -> list[Row]:
 
 def main() -> None:
     """Measures, prints and writes."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seed", type=int, default=FIRST_SEED, help="first one; to tune: not 1000")
-    parser.add_argument("--n", type=int, default=12 if quick() else 200)
-    parser.add_argument("--resume", action="store_true", help="keep the results so far")
-    arguments = parser.parse_args()
+    arguments = options(__doc__, 200, 12)
     start, bench = time.perf_counter(), Bench()
     seeds = range(arguments.seed, arguments.seed + arguments.n)
     results = [

@@ -10,7 +10,6 @@ Writes ``benchmarks/results/trajectories.json``.
 
 from __future__ import annotations
 
-import argparse
 import statistics
 import time
 from collections.abc import Callable
@@ -20,7 +19,7 @@ from typing import Any, Final
 import numpy as np
 from bench_motion import LENGTHS, broken_limits, prepared_planner, random_problem, solve
 from collision_oracle import replay
-from kept_results import kept
+from kept_results import FIRST_SEED, kept, options
 from numpy.typing import NDArray
 from path_starts import best_of_starts
 from results_file import Row, print_rows, quick, write_result
@@ -34,7 +33,6 @@ from motion_node.planner import MotionPlanner
 
 Array = NDArray[np.float64]
 
-FIRST_SEED: Final = 1000
 FOLDER: Final = "trajectories"
 #: Height above a switch within which a held block may touch what it stands on [m].
 VERTICAL: Final = 0.05
@@ -175,11 +173,7 @@ def slope(rows: Rows, parameters: Array, weights: Array, q: Array) -> Array:
 
 def main() -> None:
     """Measures, prints and writes."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seed", type=int, default=FIRST_SEED, help="first one; to tune: not 1000")
-    parser.add_argument("--n", type=int, default=40 if quick() else 1000)
-    parser.add_argument("--resume", action="store_true", help="keep the results so far")
-    arguments = parser.parse_args()
+    arguments = options(__doc__, 1000, 40)
     start = time.perf_counter()
     planner = prepared_planner([moves for moves, *_ in LENGTHS])
     seeds = range(arguments.seed, arguments.seed + arguments.n)

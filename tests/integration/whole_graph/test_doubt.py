@@ -7,13 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from rclpy.node import Node
+from judge import Judge
 from rclpy.parameter import Parameter
 from tamp_interfaces.action import AchieveGoal
-from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import PlanToGoal
-from tamp_runtime.messages.scene_graph import graph_from_message
-from tamp_runtime.qos import LATCHED
 
 from motion_node.node import MotionNode
 from perception_node.node import PerceptionNode
@@ -29,18 +26,6 @@ SCENE = "blocks: {named: {orange_box: {paint: [0.92, 0.32, 0.07]}}}"
 ASKED = "orange on green"
 
 
-class Judge(Node):
-    """Reads the ground truth, which the nodes under test must not."""
-
-    def __init__(self, **kwargs: Any) -> None:
-        super().__init__("judge", **kwargs)
-        self.truth: Any = None
-        self.create_subscription(SceneGraph, "sim/ground_truth", self._on_truth, LATCHED)
-
-    def _on_truth(self, message: SceneGraph) -> None:
-        self.truth = graph_from_message(message).stacks()
-
-
 @pytest.mark.timeout(900)
 def test_what_is_right_whatever_a_block_is_called_is_done_and_what_is_not_is_asked(
     ros_context: Any, tmp_path: Path
@@ -54,7 +39,7 @@ def test_what_is_right_whatever_a_block_is_called_is_done_and_what_is_not_is_ask
         follow_clock = [Parameter("use_sim_time", value=True)]
         ros_context.add(kind(context=context, parameter_overrides=follow_clock))
     judge = ros_context.add(Judge(context=context))
-    ros_context.wait_until(lambda: judge.truth, what="ground truth")
+    ros_context.wait_until(lambda: judge.stacks, what="ground truth")
     with PlannerClient(context=context) as planner:
         # Nobody has to know what it is called to move it out of the way.
         planner.start("green on blue", timeout=PATIENCE)
@@ -62,14 +47,14 @@ def test_what_is_right_whatever_a_block_is_called_is_done_and_what_is_not_is_ask
         assert result.status == AchieveGoal.Result.SUCCESS, result.message
         (doubtful,) = [item for item in result.initial.objects if item.alternatives]
         assert result.moves_planned == 2
-        assert judge.truth[0] == ("blue_box", "green_box")
+        assert judge.stacks[0] == ("blue_box", "green_box")
         # By its name it is asked for what it is.
         asked = planner.plan(ASKED, timeout=PATIENCE)
         assert asked.status == PlanToGoal.Response.NEEDS_ANSWER, asked.message
         assert "orange" in asked.answers and len(asked.answers) > 1
-        place = next(i for i, stack in enumerate(judge.truth) if "orange_box" in stack)
+        place = judge.place_of("orange_box")
         assert f"stack{place} ({doubtful.name})" in asked.message
         planner.start(ASKED, answer="the orange one", timeout=PATIENCE)
         result = planner.result(timeout=3.0 * PATIENCE)
         assert result.status == AchieveGoal.Result.SUCCESS, result.message
-    assert judge.truth[0] == ("blue_box", "green_box", "orange_box")
+    assert judge.stacks[0] == ("blue_box", "green_box", "orange_box")

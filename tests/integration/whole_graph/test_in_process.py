@@ -6,12 +6,9 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from rclpy.node import Node
+from judge import Judge
 from rclpy.parameter import Parameter
 from tamp_interfaces.action import AchieveGoal
-from tamp_interfaces.msg import SceneGraph
-from tamp_runtime.messages.scene_graph import graph_from_message
-from tamp_runtime.qos import LATCHED
 
 from motion_node.node import MotionNode
 from perception_node.node import PerceptionNode
@@ -24,21 +21,6 @@ PATIENCE = 120.0
 LAYOUT = ["red_box,blue_box", "", "green_box"]
 
 
-class Judge(Node):
-    """Reads the ground truth, which the nodes under test must not."""
-
-    def __init__(self, **kwargs: Any) -> None:
-        super().__init__("judge", **kwargs)
-        self.truth: SceneGraph | None = None
-        self.create_subscription(SceneGraph, "sim/ground_truth", self._on_truth, LATCHED)
-
-    def _on_truth(self, message: SceneGraph) -> None:
-        self.truth = message
-
-    def stacks(self) -> Any:
-        return graph_from_message(self.truth).stacks() if self.truth else None
-
-
 @pytest.fixture
 def judge(ros_context: Any) -> Judge:
     context = ros_context.context
@@ -49,7 +31,7 @@ def judge(ros_context: Any) -> Judge:
     for kind in (PerceptionNode, PlannerNode, MotionNode):
         ros_context.add(kind(context=context, parameter_overrides=follow_clock))
     judge = ros_context.add(Judge(context=context))
-    ros_context.wait_until(judge.stacks, what="ground truth")
+    ros_context.wait_until(lambda: judge.stacks, what="ground truth")
     return judge
 
 
@@ -63,7 +45,7 @@ def test_the_graph_builds_a_tower_that_the_simulator_confirms(
         planner.start("red on green", timeout=PATIENCE)
         result = planner.result(timeout=3.0 * PATIENCE)
         assert result.status == AchieveGoal.Result.SUCCESS, result.message
-        assert judge.stacks()[2][:2] == ("green_box", "red_box")
+        assert judge.stacks[2][:2] == ("green_box", "red_box")
         assert result.moves_planned == 2  # the shortest plan: blue away, red over
         assert result.moves_executed >= 2
         # The same goal again is true already: nothing moves.

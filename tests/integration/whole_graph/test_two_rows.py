@@ -6,13 +6,11 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from rclpy.node import Node
+from judge import Judge
 from rclpy.parameter import Parameter
 from tamp_interfaces.action import AchieveGoal
-from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import PlanToGoal
 from tamp_runtime.messages.scene_graph import graph_from_message
-from tamp_runtime.qos import LATCHED
 
 from motion_node.node import MotionNode
 from perception_node.node import PerceptionNode
@@ -30,22 +28,6 @@ PLACES = [0.58, -0.15, 0.0, 0.58, 0.0, 0.0, 0.58, 0.15, 0.0,
 GOAL = "yellow in front of red"
 
 
-class Judge(Node):
-    """Reads the ground truth, which the nodes under test must not; ``truth`` is the newest."""
-
-    def __init__(self, **kwargs: Any) -> None:
-        super().__init__("judge", **kwargs)
-        self.truth: Any = None
-        self.create_subscription(SceneGraph, "sim/ground_truth", self._on_truth, LATCHED)
-
-    def _on_truth(self, message: SceneGraph) -> None:
-        self.truth = graph_from_message(message)
-
-    def place_of(self, name: str) -> int:
-        """The place that a block is on."""
-        return next(i for i, stack in enumerate(self.truth.stacks()) if name in stack)
-
-
 @pytest.mark.timeout(600)
 def test_a_hidden_block_is_uncovered_and_then_moved(ros_context: Any) -> None:
     context = ros_context.context
@@ -58,7 +40,7 @@ def test_a_hidden_block_is_uncovered_and_then_moved(ros_context: Any) -> None:
             overrides.append(Parameter("stack_positions", value=PLACES))
         ros_context.add(kind(context=context, parameter_overrides=overrides))
     judge = ros_context.add(Judge(context=context))
-    ros_context.wait_until(lambda: judge.truth, what="ground truth")
+    ros_context.wait_until(lambda: judge.stacks, what="ground truth")
     with PlannerClient(context=context) as planner:
         answers: list[PlanToGoal.Response] = []
 

@@ -54,7 +54,8 @@ class _Compilers:
                 finally:
                     running.kill()
         finally:
-            self._all.discard(running)
+            with self._lock:
+                self._all.discard(running)
 
     def _end(self) -> None:
         with self._lock:

@@ -22,9 +22,7 @@ GENERATED: Final = ("-O1",)
 
 def machine_code(function: ca.Function) -> Path | None:
     """The library that has a function of casadi under its name; None where there can be none."""
-    coming = MachineCode(function)
-    coming.ready.wait()
-    return coming.library
+    return compiled(*_generated(function))
 
 
 class MachineCode:
@@ -38,14 +36,10 @@ class MachineCode:
     """
 
     def __init__(self, function: ca.Function) -> None:
-        generator = ca.CodeGenerator(f"{function.name()}.c")
-        generator.add(function)
-        self._sources = {f"{function.name()}.c": generator.dump()}
-        self._flags = (ca.CasadiMeta.version(), *GENERATED)
+        self._code = _generated(function)
         self.ready = threading.Event()
         self.library: Path | None = None
-        library = place(self._sources, self._flags)
-        if library.exists() or compiler() is None:
+        if place(*self._code).exists() or compiler() is None:
             self.come()
         else:
             self.compile_later()
@@ -56,8 +50,10 @@ class MachineCode:
 
     def come(self) -> None:
         """Compiles it now, if that has not been done."""
-        self.library = compiled(self._sources, self._flags)
-        self.ready.set()
+        try:
+            self.library = compiled(*self._code)
+        finally:
+            self.ready.set()
 
 
 def finish() -> None:
@@ -72,11 +68,22 @@ def compilations() -> queue.Queue[MachineCode]:
 
     def work() -> None:
         while True:
-            waiting.get().come()
-            waiting.task_done()
+            coming = waiting.get()
+            try:
+                coming.come()
+            finally:
+                waiting.task_done()
 
     threading.Thread(target=work, name="compiler", daemon=True).start()
     return waiting
+
+
+def _generated(function: ca.Function) -> tuple[dict[str, str], tuple[str, ...]]:
+    """The C of a function by the name of its file, and the compiler's flags."""
+    name = f"{function.name()}.c"
+    generator = ca.CodeGenerator(name)
+    generator.add(function)
+    return {name: generator.dump()}, (ca.CasadiMeta.version(), *GENERATED)
 
 
 def loaded(function: ca.Function, library: Path | None) -> ca.Function:

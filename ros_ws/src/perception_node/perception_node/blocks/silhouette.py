@@ -22,11 +22,13 @@ from numpy.typing import NDArray
 
 from perception_node.camera import PinholeCamera
 from perception_node.segment import Segments
-from scene_graph import BOX, CYLINDER, SPHERE
+from scene_graph import BOX, SPHERE
 
+from .behind import seen_behind
 from .measure import BlockSurface
 from .outline import shape_from_outline
 from .reach import DIRECTIONS, Reach, points_around, reach_of, towers_over
+from .unit_bodies import DEEP, HIGH, LOW, TURN, UNITS, WIDE, X, Y
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -63,44 +65,12 @@ AS_LIKELY: Final = 0.4
 #: all the same, rather round than a box, and round for sure; less than this [m] is no difference.
 ROUND: Final = (0.9, 1.1, 2.0)
 EXACT: Final = 1e-4
-#: What stands on a block hides of its top half of its own width and half of that of the top, less
-#: where it stands further back: at least this part; what is behind it hides nothing. For a camera
-#: that looks down on it by this tangent or more.
-HIDES: Final = 0.45
-LEAST_STEEP: Final = 0.08
 #: Sizes that blocks can have [m].
 SMALLEST: Final = 0.012
 LARGEST: Final = 0.14
 
-_X, _Y, _YAW, _WIDE, _DEEP, _HIGH, _LOW = range(7)
 #: By so much parameters are changed to see what that does [m, rad].
 _CHANGE: Final = np.array([1e-4, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4, 1e-4])
-
-
-def _unit(shape: str) -> Array:
-    """Corners of a body of unit size about its middle, shape (n, 3)."""
-    turns = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
-    if shape == BOX:
-        return np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-    if shape == CYLINDER:
-        ring = 0.5 * np.stack([np.cos(turns), np.sin(turns)], -1)
-        return np.concatenate([np.column_stack([ring, np.full(16, z)]) for z in (-0.5, 0.5)])
-    heights = np.linspace(-0.5, 0.5, 9)
-    return np.concatenate(
-        [
-            np.column_stack(
-                [
-                    np.sqrt(0.25 - z**2) * np.cos(turns),
-                    np.sqrt(0.25 - z**2) * np.sin(turns),
-                    np.full(16, z),
-                ]
-            )
-            for z in heights
-        ]
-    )
-
-
-_UNITS: Final = {shape: _unit(shape) for shape in (BOX, CYLINDER, SPHERE)}
 
 
 def measure_silhouettes(
@@ -143,20 +113,6 @@ def _shape(rgb: NDArray[np.uint8], part: Mask) -> str:
     return shape_from_outline(rgb[box], part[box], AS_LIKELY)
 
 
-def _upper_edge(corners: Array, columns: Array) -> Array:
-    """The row of a convex outline's upper boundary at columns, NaN beside it, (n, 2) and (k,)."""
-    hull = cv2.convexHull(corners.astype(np.float32))[:, 0].astype(np.float64)
-    rows = np.full((len(hull), len(columns)), np.nan)
-    for index, (begin, end) in enumerate(zip(hull, np.roll(hull, -1, axis=0))):
-        if begin[0] > end[0]:
-            begin, end = end, begin
-        within = (columns >= begin[0]) & (columns <= end[0]) & (end[0] > begin[0])
-        share = (columns[within] - begin[0]) / (end[0] - begin[0])
-        rows[index, within] = begin[1] + share * (end[1] - begin[1])
-    rows = np.where(np.isnan(rows), np.inf, rows).min(axis=0)
-    return np.where(np.isinf(rows), np.nan, rows)
-
-
 class _Known(NamedTuple):
     """What is known beforehand of 6N parameters p: ``normal_off @ p - right`` is its slope.
 
@@ -185,10 +141,9 @@ class _Fit:
     ) -> None:
         self.towers, self.shapes, self.reach = towers, list(shapes), reach
         self.outlines = outlines
-        self.behind = np.zeros(len(shapes), bool)
         self.camera, self.feet = camera, feet
         self.count = len(shapes)
-        units = [_UNITS[shape] for shape in shapes]
+        units = [UNITS[shape] for shape in shapes]
         most = max(map(len, units))
         # Bodies with fewer corners have their last one several times.
         self.units = np.stack(
@@ -222,9 +177,14 @@ class _Fit:
     def surfaces(self, found: Fitted, rivals: Sequence[str]) -> tuple[BlockSurface, ...]:
         """What was found, in the order of the segments."""
         values, covariance, misfit = found
-        self._mark_behind(values)
+        behind = seen_behind(
+            self._with_low(values), self.shapes, self.below, self.outlines, self.reach.scale,
+            self.camera,
+        )  # fmt: skip
         return tuple(
-            self._surface(index, values, covariance, float(misfit[index]), rivals[index])
+            self._surface(
+                index, values, covariance, float(misfit[index]), rivals[index], bool(behind[index])
+            )
             for index in range(self.count)
         )
 
@@ -237,45 +197,12 @@ class _Fit:
         for yaw in (None, 0.0, 0.25 * np.pi):
             turned = start.copy()
             if yaw is not None:
-                turned[[shape == BOX for shape in self.shapes], _YAW] = yaw
+                turned[[shape == BOX for shape in self.shapes], TURN] = yaw
             values, _, misfit = self._fitted(turned, EQUAL, EQUAL)
             ends.append(values)
             misfits.append(misfit)
         best = np.array(misfits).argmin(axis=0)
         return np.asarray(np.array(ends)[best, np.arange(self.count)])
-
-    def _mark_behind(self, values: Array) -> None:
-        """Marks what does not hide the top of the block below it as far as what stands there does.
-
-        What stands on a block hides its top from the front edge of its own lower end to the back;
-        what is behind it ends where that top does.
-        """
-        full = self._with_low(values)
-        for upper, lower in enumerate(self.below):
-            if lower < 0:
-                continue
-            size = values[lower, _WIDE:_LOW]
-            corners = _UNITS[self.shapes[lower]] * size
-            corners = corners[corners[:, 2] > 0.0]
-            c, s = np.cos(values[lower, _YAW]), np.sin(values[lower, _YAW])
-            turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-            height = full[lower, _LOW] + 0.5 * size[2]
-            top = corners @ turn + [*values[lower, :2], height]
-            edge = self.camera.project(top)
-            points = self.outlines[upper]
-            left, right = np.quantile(points[:, 0], [0.3, 0.7])
-            middle = (points[:, 0] >= left) & (points[:, 0] <= right)
-            ends = points[middle & (points[:, 1] > np.median(points[:, 1]))]
-            # The upper boundary of the top is that of its convex outline.
-            back = _upper_edge(edge, ends[:, 0])
-            inside = np.isfinite(back)
-            off = self.camera.position_world - top.mean(axis=0)
-            steep = float(off[2] / np.hypot(*off[:2]))
-            if not inside.any() or steep < LEAST_STEEP:
-                continue
-            hides = float(np.median(ends[inside, 1] - back[inside])) / self.reach.scale[upper]
-            width = 0.5 * (values[upper, _WIDE] + values[lower, _WIDE])
-            self.behind[upper] = hides < HIDES * steep * width
 
     def _fitted(
         self, values: Array, square: float, cube: float, alike: bool = False
@@ -293,7 +220,7 @@ class _Fit:
             step = np.linalg.solve(normal, -right).reshape(self.count, 6)
             limit = np.array([0.02, 0.02, 0.25, 0.02, 0.02, 0.02])
             values = values + np.clip(step, -limit, limit)
-            values[:, _WIDE:_LOW] = np.clip(values[:, _WIDE:_LOW], SMALLEST, LARGEST)
+            values[:, WIDE:LOW] = np.clip(values[:, WIDE:LOW], SMALLEST, LARGEST)
             if np.abs(step).max() < SETTLED:
                 break
         covariance = np.linalg.inv(self._normal(values, known)[0])
@@ -307,40 +234,40 @@ class _Fit:
         # Directions 0 and half of them are right and left, those between down and up.
         far, quarter = self.reach.far, DIRECTIONS // 4
         across = (far[:, 0] + far[:, 2 * quarter]) / self.reach.scale
-        values[:, _WIDE] = values[:, _DEEP] = values[:, _HIGH] = np.clip(
+        values[:, WIDE] = values[:, DEEP] = values[:, HIGH] = np.clip(
             across / 1.15, SMALLEST, LARGEST
         )
         costs = []
         for yaw in YAWS:
             turned = values.copy()
-            turned[:, _YAW] = yaw
+            turned[:, TURN] = yaw
             width = across / (abs(np.cos(yaw)) + abs(np.sin(yaw)))
-            turned[:, _WIDE:_LOW] = np.clip(width, SMALLEST, LARGEST)[:, None]
+            turned[:, WIDE:LOW] = np.clip(width, SMALLEST, LARGEST)[:, None]
             # In the picture the outline is where it is: only its form tells the yaw.
             off = self._off(turned)
             form = off - off @ self.reach.directions @ self.reach.directions.T * (2.0 / DIRECTIONS)
             costs.append((form**2).sum(axis=1))
         best = np.array(costs).argmin(axis=0)
-        values[:, _YAW] = YAWS[best]
-        width = across / (np.abs(np.cos(values[:, _YAW])) + np.abs(np.sin(values[:, _YAW])))
-        values[:, _WIDE:_LOW] = np.clip(width, SMALLEST, LARGEST)[:, None]
+        values[:, TURN] = YAWS[best]
+        width = across / (np.abs(np.cos(values[:, TURN])) + np.abs(np.sin(values[:, TURN])))
+        values[:, WIDE:LOW] = np.clip(width, SMALLEST, LARGEST)[:, None]
         round_ones = [index for index, shape in enumerate(self.shapes) if shape != BOX]
-        values[round_ones, _YAW] = 0.0
+        values[round_ones, TURN] = 0.0
         return values
 
     def _with_low(self, values: Array) -> Array:
         """The parameters and z of the lower end, shape (N, 7)."""
-        low = self.foot[:, 2] + self.under @ values[:, _HIGH]
+        low = self.foot[:, 2] + self.under @ values[:, HIGH]
         return np.column_stack([values, low])
 
     def _seen(self, values: Array) -> Array:
         """How far blocks reach in each direction, (..., N, 7) -> (..., N, K) [px]."""
-        c, s = np.cos(values[..., _YAW]), np.sin(values[..., _YAW])
-        size = values[..., None, _WIDE:_LOW]
+        c, s = np.cos(values[..., TURN]), np.sin(values[..., TURN])
+        size = values[..., None, WIDE:LOW]
         own = self.units * size
-        x = c[..., None] * own[..., 0] - s[..., None] * own[..., 1] + values[..., _X, None]
-        y = s[..., None] * own[..., 0] + c[..., None] * own[..., 1] + values[..., _Y, None]
-        z = own[..., 2] + (values[..., _LOW] + 0.5 * values[..., _HIGH])[..., None]
+        x = c[..., None] * own[..., 0] - s[..., None] * own[..., 1] + values[..., X, None]
+        y = s[..., None] * own[..., 0] + c[..., None] * own[..., 1] + values[..., Y, None]
+        z = own[..., 2] + (values[..., LOW] + 0.5 * values[..., HIGH])[..., None]
         pixels = self.camera.project(np.stack([x, y, z], -1))
         return np.asarray((pixels @ self.reach.directions.T).max(axis=-2))
 
@@ -361,7 +288,7 @@ class _Fit:
         matrix = np.zeros((count, k, count, 6))
         own = np.arange(count)
         matrix[own, :, own, :] = slopes[:6].transpose(1, 2, 0)
-        matrix[..., _HIGH] += slopes[_LOW][:, :, None] * self.under[:, None, :]
+        matrix[..., HIGH] += slopes[LOW][:, :, None] * self.under[:, None, :]
         doubt = COMMON * OUTLINE * self.reach.scale[:, None]
         flat = (matrix / doubt[..., None, None] * active[..., None, None]).reshape(count * k, -1)
         flat_off = (off / doubt * active).ravel()
@@ -388,34 +315,34 @@ class _Fit:
         for index in range(self.count):
             below = int(self.below[index])
             is_box = self.shapes[index] == BOX
-            for axis in (_X, _Y):
+            for axis in (X, Y):
                 add(self.foot[index, axis], ON_PLACE, (index, axis, 1.0))
                 if below >= 0:
                     add(0.0, ON_BLOCK, (index, axis, 1.0), (below, axis, -1.0))
             # No yaw is likelier than another one: steps are kept short.
-            add(0.0, YAW if is_box else 1e-3, (index, _YAW, 1.0), pulls=False)
-            add(0.0, square if is_box else 1e-4, (index, _WIDE, 1.0), (index, _DEEP, -1.0))
+            add(0.0, YAW if is_box else 1e-3, (index, TURN, 1.0), pulls=False)
+            add(0.0, square if is_box else 1e-4, (index, WIDE, 1.0), (index, DEEP, -1.0))
             high_as_wide = 1e-4 if self.shapes[index] == SPHERE else cube if is_box else CUBE
-            add(0.0, high_as_wide, (index, _HIGH, 1.0), (index, _WIDE, -1.0))
-            add(0.045, WIDTH, (index, _WIDE, 1.0))
+            add(0.0, high_as_wide, (index, HIGH, 1.0), (index, WIDE, -1.0))
+            add(0.045, WIDTH, (index, WIDE, 1.0))
             if alike and index:
-                add(0.0, EQUAL, (index, _WIDE, 1.0), (index - 1, _WIDE, -1.0))
+                add(0.0, EQUAL, (index, WIDE, 1.0), (index - 1, WIDE, -1.0))
         matrix = np.array(rows)
         weighted = (matrix * np.array(sure)[:, None]).T
         pulled = matrix * np.array(is_pulled)[:, None]
         return _Known(weighted @ matrix, weighted @ pulled, weighted @ np.array(about))
 
     def _surface(
-        self, index: int, values: Array, covariance: Array, misfit: float, rival: str
+        self, index: int, values: Array, covariance: Array, misfit: float, rival: str, behind: bool
     ) -> BlockSurface:
         x, y, yaw, wide, deep, high = (float(value) for value in values[index])
         to_block = np.zeros((7, self.count, 6))
-        to_block[[0, 1, 2, 3, 4], index, [_X, _Y, _YAW, _WIDE, _DEEP]] = 1.0
-        to_block[5, :, _HIGH] = self.under[index]
-        to_block[6, :, _HIGH] = self.under[index]
-        to_block[6, index, _HIGH] = 1.0
+        to_block[[0, 1, 2, 3, 4], index, [X, Y, TURN, WIDE, DEEP]] = 1.0
+        to_block[5, :, HIGH] = self.under[index]
+        to_block[6, :, HIGH] = self.under[index]
+        to_block[6, index, HIGH] = 1.0
         flat = to_block.reshape(7, -1)
-        low = float(self.foot[index, 2] + self.under[index] @ values[:, _HIGH])
+        low = float(self.foot[index, 2] + self.under[index] @ values[:, HIGH])
         turn = round(yaw / (np.pi / 2)) if self.shapes[index] == BOX else 0
         if turn % 2:
             flat = flat[[0, 1, 2, 4, 3, 5, 6]]
@@ -424,5 +351,5 @@ class _Fit:
         return BlockSurface(
             self.shapes[index], (x, y), yaw - turn * np.pi / 2, (wide, deep), low, low + high,
             doubt, rival=rival, upright=misfit < MISFIT, seen_low=low,
-            behind=bool(self.behind[index]),
+            behind=behind,
         )  # fmt: skip

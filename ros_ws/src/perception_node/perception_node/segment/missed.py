@@ -13,6 +13,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from perception_node.masks import pixels_of
+
 Floats = NDArray[np.float32]
 Mask = NDArray[np.bool_]
 
@@ -51,14 +53,14 @@ def may_be_missed(
             continue
         left_out = max((float(one[zone].mean()) for one in vague), default=0.0)
         if left_out > VAGUE or float(likely[zone].mean()) > LIKELY:
-            rows, columns = np.nonzero(zone)
+            rows, columns = pixels_of(zone)
             return int(np.median(columns)), int(np.median(rows))
     return None
 
 
 def _over(mask: Mask) -> Mask:
     """What is right over the middle of a mask."""
-    columns = np.nonzero(mask.any(axis=0))[0]
+    columns = np.flatnonzero(mask.any(axis=0))
     low, high = np.percentile(columns, [3, 97])
     beside = BESIDE * (high - low)
     columns = columns[(columns >= low + beside) & (columns <= high - beside)]
