@@ -518,8 +518,6 @@ class Discourse:
             subjects = [replace(subject, only=True) for subject in subjects[:-1]]
         if only := [subject for subject in subjects if subject.only]:
             self._only(subjects, phrase, denied, object_, only[0])
-            if all(term.kind is Kind.EVERY for term in only):
-                return
             subjects = [replace(subject, only=False) for subject in subjects]
         for subject in subjects:
             subject = self._among_others(subject, phrase, object_)
@@ -578,13 +576,6 @@ class Discourse:
     def _only(
         self, subjects: Sequence[Term], phrase: Phrase, denied: bool, object_: Term, one: Term
     ) -> None:
-        if all(term.kind is Kind.EVERY for term in subjects) and object_.is_place and not denied:
-            # "only boxes in stack 1" does not say that all are.
-            others = Term(Words("block", one.words.offset), Kind.EVERY, but=tuple(subjects))
-            others = replace(others, but=tuple(replace(term, only=False) for term in subjects))
-            inside = Phrase(PREDICATES[ABOVE])
-            self.relations.append(ParsedRelation(others, inside, object_, negated=True))
-            return
         found = none_but(subjects, phrase, denied, object_)
         if found is None:
             raise unclear(one)
