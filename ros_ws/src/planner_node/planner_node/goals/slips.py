@@ -33,6 +33,8 @@ def mended(word: str, known: frozenset[str]) -> tuple[str, ...]:
             continue
         if _harmless(word, other):
             near.setdefault(0.5, set()).add(other)
+        elif other in COLORS and word[0] == other[0] and sorted(word) == sorted(other):
+            near.setdefault(0.7, set()).add(other)
         elif (
             (len(other) > 3 or other in COLORS)
             and word[0] == other[0]
@@ -49,6 +51,9 @@ def mended(word: str, known: frozenset[str]) -> tuple[str, ...]:
         return ()
     best = near[min(near)]
     best = best & set(COLORS) or best
+    if len(best) > _MOST:
+        fewest = min(edits(word, other) for other in best)
+        best = {other for other in best if edits(word, other) == fewest}
     return tuple(sorted(best)) if len(best) <= _MOST else ()
 
 

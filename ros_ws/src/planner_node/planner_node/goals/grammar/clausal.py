@@ -10,6 +10,7 @@ from typing import Final
 
 from scene_graph import LEFT, PREDICATES, Phrase
 
+from ..language import PLACE_NOUNS
 from ..terms import Kind, Term, Words
 from .lattice import Word
 from .meaning import Item, Link, Names, Relate, Take
@@ -254,7 +255,7 @@ def _only_of(s: Names, x: Word | str) -> Names:
 
 
 def _is_place(term: Term) -> bool:
-    return term.is_place or term.words.text == "stack"
+    return term.is_place or term.words.text in PLACE_NOUNS
 
 
 def but(s: Names, e: Names) -> Names | None:
@@ -332,6 +333,14 @@ def _bare(s: Names, to: tuple[Link, ...]) -> Relate | None:
     return relate(s, to, bare=True)
 
 
+def _counted_after(k: Word, n: tuple[Words, bool], to: tuple[Link, ...], w: Word) -> Relate | None:
+    """ "one block in every stack at least"."""
+    least, most = int(k.means), None
+    if w.text not in ("or more", "at least", "or above", "at the very least"):
+        least, most = 0, least
+    return relate(Names((term_of(n[0], Kind.COUNT, least=least, most=most),)), to, bare=True)
+
+
 def _at_place(p: Term, s: Names, to: tuple[Link, ...]) -> Relate | None:
     if to[0].denied or to[0].names is None or to[0].names.terms[0].is_place or _before(to, s):
         return None
@@ -341,7 +350,7 @@ def _at_place(p: Term, s: Names, to: tuple[Link, ...]) -> Relate | None:
 def _beside_place(p: Term, s: Names | None = None, n: Names | None = None) -> Relate | None:
     s = s or n
     assert s is not None
-    if any(term.is_place for term in s.terms) or s.either:
+    if any(_is_place(term) for term in s.terms) or s.either:
         return None
     return Relate(s, (Link(p.words, INSIDE, Names((p,))),), bare=True)
 

@@ -11,7 +11,7 @@ from typing import Final
 from scene_graph import COLORS, PREDICATES, SHAPES, Phrase
 
 from ..slips import mended
-from .lexicon import ENTRIES, FILLER, MORE_COLORS
+from .lexicon import BAD, ENTRIES, FILLER, MORE_COLORS, RELATED
 from .tokens import Token
 
 #: What it costs to leave a word out, a comma beside such a word, to mend a word, and to take one
@@ -39,6 +39,19 @@ class Word:
     phrase: Phrase | None = None
 
 
+#: What a word must not be that gives a reason.
+_REASON: Final = frozenset({
+    "RELATION", "PLACENOUN", "PLACENOUNS", "NUMBERED", "MARK", "COMMA", "AND", "BUT", "OR",
+    "INSTEADOF", "ALLBUT",
+})  # fmt: skip
+#: What a word may be that is part of a sentence which says nothing of blocks.
+_CHAT: Final = frozenset({
+    "UNKNOWN", "I", "YOU", "A", "THE", "BE", "MUST", "CAN", "MAY", "DO", "GOOD", "PERSONNOUN",
+    "PAST", "PLEASEME", "POSSESSIVE", "NOW", "STEP", "GOAL", "ADJ", "HIGH", "MODAL", "HAS", "GIVENFOR",
+    "INPLACE", "TOSIDE", "TOSPOT", "OFOF", "OF", "LIKE", "AS", "PER", "IN", "PLAINUP", "FIRST",
+    "NEEDNOT", "END", "FINAL", "VIEW", "LET", "LETTING", "REASONWORD",
+})  # fmt: skip
+_JOINING: Final = frozenset({"and", "then", "but", "while", "tomorrow", "later", "on", "onto"})
 #: For every word, by kind: where what begins there ends, what it is, and at what cost.
 Lattice = list[dict[str, list[tuple[int, Word, float]]]]
 #: By first word: kind, all words, what they stand for, and the phrase that they are.
@@ -53,6 +66,9 @@ def _index(phrases: tuple[tuple[tuple[str, ...], Phrase], ...]) -> _Index:
             index.setdefault(words[0], []).append((kind, words, means, None))
     for color in (*COLORS, *MORE_COLORS):
         index.setdefault(color, []).append(("COLOR", (color,), color, None))
+    known = dict(phrases)
+    for words, means in RELATED:
+        index.setdefault(words[0], []).append(("RELATION", words, means, known[tuple(means.split())]))
     for words, phrase in phrases:
         index.setdefault(words[0], []).append(("RELATION", words, " ".join(words), phrase))
     return index
@@ -91,6 +107,15 @@ def lattice_of(tokens: Sequence[Token], literals: Collection[str]) -> Lattice:
         for kind, said, cost in _kinds(token.text, words[start], literals, alone):
             word = Word(said, said, token.offset, token.end)
             here.setdefault(kind, []).append((start + 1, word, cost))
+        said = Word(token.text, token.text, token.offset, token.end)
+        if token.text not in BAD | _JOINING:
+            if _REASON.isdisjoint(here):
+                here["REASONWORD"] = [(start + 1, said, 0.0)]
+            spoken = {kind for kind in here if not kind.startswith("'")}
+            if token.text in ("in", "at", "to"):
+                spoken.discard("RELATION")
+            if spoken <= _CHAT:
+                here["CHATWORD"] = [(start + 1, said, 0.0)]
         found.append(here)
         fillers.append(skips)
     return _with_fillers(found, fillers, [token.text for token in tokens])

@@ -44,3 +44,5 @@ ENTRIES: Final = _entries()
 NO_SLIPS: Final = frozenset(words[0] for words, _ in ENTRIES.pop("NO_SLIPS"))
 #: Words that deny what stands beside them, so that nobody may leave them out.
 BAD: Final = frozenset(words[0] for words, _ in ENTRIES.pop("BAD"))
+#: Other ways to say a relation.
+RELATED: Final = tuple(ENTRIES.pop("RELATED"))

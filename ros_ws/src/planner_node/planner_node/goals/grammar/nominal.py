@@ -120,7 +120,7 @@ def _both(n: tuple[Words, bool]) -> Term | None:
 
 
 def _everything(w: Word) -> Term:
-    bare = w.text in ("all", "them all", "all of them")
+    bare = w.text in ("all", "them all", "all of them", "all of it", "it all")
     return term_of(words_of(w, text="block"), Kind.EVERY, bare=bare)
 
 
@@ -269,6 +269,10 @@ def _numbered(n: Word, k: Word) -> Term:
 def _some_place(n: Word) -> Term:
     """Asked back with the places that there are."""
     return term_of(words_of(n))
+
+
+def _digit(k: Word) -> Term | None:
+    return term_of(words_of(k, text=f"stack {k.text}")) if k.text.isdigit() else None
 
 
 def _side_one(s: Word) -> Term:
@@ -446,6 +450,15 @@ def _range(p: Term | Word, q: Term | Word) -> Names | None:
 
 def _sides(i: Word, j: Word) -> Names:
     return Names(tuple(term_of(words_of(k, text=f"{k.means} stack")) for k in (i, j)))
+
+
+def _outer() -> Names:
+    return Names(tuple(Term(Words(f"{side} stack", 0, 0)) for side in ("left", "right")))
+
+
+def _apposed(who: Names) -> Names | None:
+    """ "the blocks red and green"."""
+    return who if all(one.kind is Kind.THE and not one.is_place for one in who.terms) else None
 
 
 def _corrected(m: Term) -> Names:

@@ -58,15 +58,15 @@ def parse_goal(text: str) -> Parsed:
     if not readings:
         assert error is not None
         raise error
-    sensible = [said for said in readings if not any(map(_of_itself, said))]
+    sensible = [said for said in readings if not any(map(_senseless, said))]
     return Parsed(tuple(sensible or readings))
 
 
-def _of_itself(said: Said) -> bool:
-    """Whether it relates a block to itself."""
+def _senseless(said: Said) -> bool:
+    """Whether it relates a block to itself, or puts a place somewhere."""
     if isinstance(said, Changed) or said.subject.kind is not Kind.THE:
         return False
-    return said.subject.words.text == said.object.words.text
+    return said.subject.words.text == said.object.words.text or said.subject.is_place
 
 
 def _parses(tokens: Sequence[Token]) -> list[tuple[float, tuple[Joined, ...]]]:

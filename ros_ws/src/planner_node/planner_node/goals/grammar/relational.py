@@ -129,6 +129,10 @@ def _off(w: Word, who: Names) -> Link | None:
     return Link(words_of(w), INSIDE if place else UPON, who, denied=True)
 
 
+def _away(w: Word, p: Term) -> Link:
+    return Link(words_of(w), INSIDE, Names((p,)), denied=True)
+
+
 def _denied(to: Link) -> Link | None:
     if to.adjacent or to.how in ("alone", "where"):
         return None
@@ -190,3 +194,8 @@ def _neither_of(w: Word, levels: Term, m: Term) -> tuple[Link, ...]:
 
 def _corrected(m: Link) -> tuple[Link, ...]:
     return (m,)
+
+
+def _corrected_place(to: Link, p: Term) -> tuple[Link, ...] | None:
+    place = to.names is not None and all(term.is_place for term in to.names.terms)
+    return (replace(to, names=Names((p,))),) if place and not to.how else None

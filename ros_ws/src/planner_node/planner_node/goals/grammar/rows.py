@@ -79,6 +79,10 @@ def _then(b: Term) -> tuple[str, Term]:
     return "then", b
 
 
+def _under(b: Term) -> tuple[str, Term]:
+    return "under", b
+
+
 def _started(b: Term) -> tuple[str, Term]:
     return "bottom", b
 
@@ -120,7 +124,9 @@ def _leveled(
     where = [how for how, _ in levels]
     if "upon" in where and h is None:
         return None  # "red at the bottom, blue on it": of which tower?
-    where = ["then" if how == "upon" else how for how in where]
+    if "under" in where and where[0] != "top":
+        return None
+    where = ["then" if how in ("upon", "under") else how for how in where]
     blocks = [block for _, block in levels]
     ordered = _ordered(where, blocks)
     if ordered is None:
@@ -133,6 +139,19 @@ def _leveled(
         return None
     row = row_of(UP, ordered, p)
     return row and replace(row, footed="bottom" in where)
+
+
+def _formed(
+    n: tuple[Term, ...], levels: tuple[tuple[str, Term], ...] = (),
+    e: tuple[str, Term] | None = None, d: tuple[str, bool] | None = None,
+) -> Row | None:  # fmt: skip
+    """ "white, brown and purple form a tower with white at the bottom"."""
+    return _row(d, n) if d is not None else _leveled(levels, n=n, e=e, h="tower")
+
+
+def _sandwich(b: Term, c: Term, d: Term, e: tuple[str, Term]) -> Row | None:
+    """ "red between blue and green, with blue on top"."""
+    return _leveled(n=(c, b, d), e=e, h="tower")
 
 
 def _ordered(where: list[str], blocks: list[Term]) -> tuple[Term, ...] | None:

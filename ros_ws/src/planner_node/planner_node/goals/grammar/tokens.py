@@ -10,6 +10,7 @@ from typing import Final
 from scene_graph import COLORS, PREDICATES
 
 from ...errors import InvalidGoalError
+from .lexicon import MORE_COLORS
 
 _TOKEN: Final = re.compile(
     r"(?P<left_out>[:;]-?[)D(](?!\w)|[\"“”‘*]|['’](?!\w)|(?<!\w)['’]|(?<![\w.])(?:\d+|[a-e])\)(?=\s)"
@@ -21,6 +22,8 @@ _TOKEN: Final = re.compile(
     re.IGNORECASE,
 )
 #: Relations as they are written in logic: "on(red, blue)", "clear(red)".
+#: "stack[0]".
+_INDEXED: Final = re.compile(r"([a-z]+)\[(\d+)\]", re.IGNORECASE)
 _CALL: Final = re.compile(r"([a-z_]+)\(([\w ]+)(?:,([\w ]+))?\)", re.IGNORECASE)
 _SIGNS: Final = {
     "+": "and", "=": "is", "==": "is", "#": "number", "@": "in", "!": "not",
@@ -39,11 +42,13 @@ _SHORT: Final = {
     "there's": "there is", "theres": "there is", "youd": "you would", "teh": "the", "hte": "the",
     "th": "the", "thats it": "that is it", "y'all": "you", "d'you": "do you", "atleast": "at least",
     "alot": "a lot", "infront": "in front", "upside-down": "upside down", "nr": "number",
-    "der": "the", "die": "the", "das": "the", "upto": "up to",
+    "der": "the", "die": "the", "das": "the", "upto": "up to", "pt": "put",
+    "whats": "what is", "itll": "it will", "hes": "he is", "whos": "who is", "wouldve": "would have",
 }  # fmt: skip
 _TAILS: Final = {"d": "would", "ll": "will", "re": "are", "ve": "have", "m": "am", "s": "is"}
 #: Words that are written together with the one beside them: "redon blue", "putthe red".
 _GLUED: Final = frozenset({"on", "onto", "in", "to", "is", "the", "put"})
+_HUES: Final = frozenset(COLORS) | MORE_COLORS
 _NOUNS: Final = frozenset({"box", "block", "one", "cube", "cylinder"})
 
 
@@ -58,6 +63,7 @@ class Token:
 
 def tokens_of(text: str) -> list[Token]:
     """The words and signs of a text; raises InvalidGoalError for a sign that goals do not have."""
+    text = _INDEXED.sub(r"\1 \2 ", text)
     found: list[Token] = []
     behind = 0
     for match in _TOKEN.finditer(text):
@@ -114,9 +120,9 @@ def _words(word: str) -> list[str]:
         return [head, _TAILS[tail] if tail != "s" else "'s"]
     for at in range(2, len(word) - 1):
         one, other = word[:at], word[at:]
-        behind = one in COLORS and other in _GLUED | _NOUNS
-        if behind or (one in _GLUED and other in COLORS) or (one, other) == ("put", "the"):
+        behind = one in _HUES and other in _GLUED | _NOUNS
+        if behind or (one in _GLUED and other in _HUES) or (one, other) == ("put", "the"):
             return [one, other]
-    if "-" in word and word.partition("-")[0] in COLORS:
+    if "-" in word and word.partition("-")[0] in _HUES:
         return word.split("-")  # "red-colored"
     return [word]
