@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From what sentences say one behind the other to relations: who "it", "both" and "there" are."""
+"""From what sentences say one behind the other to relations."""
 
 from __future__ import annotations
 
@@ -7,45 +7,20 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from scene_graph import ABOVE, BESIDE, LEFT, PREDICATES, UP, Phrase
+from scene_graph import ABOVE, LEFT, PREDICATES, UP, Phrase
 
 from ...errors import InvalidGoalError
-from ..objections import check_places, unclear, untold
-from ..parsed import Changed, ParsedRelation, Said, in_one_place, none_but
-from ..terms import Described, Kind, Term, Words, is_any_place
-from .meaning import Again, Change, Item, Link, Mention, Names, Relate, Row, Take
-from .nominal import INSIDE, UPON
+from ..objections import unclear, untold
+from ..parsed import Changed, ParsedRelation, Said
+from ..terms import Kind, Term, Words
+from .claims import unclear_words
+from .linking import Linking
+from .meaning import Again, Change, Item, Link, Mention, Relate, Row, Take
+from .nominal import UPON
 
-_BESIDE = Phrase(PREDICATES[BESIDE])
 
-
-class Discourse:
-    """What was said so far.
-
-    Attributes:
-        relations: what it means.
-        subjects, object, link: of the last relation.
-    """
-
-    def __init__(self) -> None:
-        self.relations: list[Said] = []
-        self.subjects: list[Term] = []
-        self.object: Term | None = None
-        self.link: tuple[Phrase, bool, Words] | None = None
-        self._named: dict[str, Term] = {}
-        self._kinds: list[Term] = []
-        self._taken: list[Term] = []
-        self._off: Link | None = None
-        #: Whether the last clause was denied by its verb.
-        self._denied = False
-        #: A name of which nothing is said yet.
-        self._mentioned: Term | None = None
-        self._sides = False
-        #: Who stands at the bottom of a tower of which it is not yet said where it is.
-        self._foot: Term | None = None
-        self._footed: Term | None = None
-        #: How many relations there were before the sentence.
-        self._before = 0
+class Discourse(Linking):
+    """Reads one item behind the other."""
 
     def read(self, joined: Iterable[tuple[str, Item]]) -> tuple[Said, ...]:
         """The relations of all items.
@@ -64,7 +39,7 @@ class Discourse:
             if mentioned is not None and how == "with":
                 raise unclear(mentioned)
             if row and isinstance(item, Relate) and item.subject is None and how != ".":
-                raise _unclear_words(item.links[0].words)
+                raise unclear_words(item.links[0].words)
             row = isinstance(item, Row)
             if isinstance(item, Relate):
                 if (
@@ -77,7 +52,7 @@ class Discourse:
                         for term in link.names.terms
                     )
                 ):
-                    raise _unclear_words(item.links[0].words)  # is it in that place as well?
+                    raise unclear_words(item.links[0].words)  # is it in that place as well?
                 fronted = item.fronted
                 self._relate(item)
             elif isinstance(item, Mention):
@@ -107,7 +82,7 @@ class Discourse:
         for number, said in enumerate(self.relations):
             if isinstance(said, Changed):
                 if said.kind not in ("keep", "same") and len(self.relations) > 1:
-                    raise _unclear_words(said.words)
+                    raise unclear_words(said.words)
                 continue
             for term in (said.subject, said.object):
                 now = term.described
@@ -117,69 +92,7 @@ class Discourse:
                         before.subject,
                         before.object,
                     ):
-                        raise _unclear_words(term.words)
-
-    # Who is meant
-
-    def _all_named(self, term: Term) -> list[Term]:
-        number = term.exact or (2 if not term.bare else max(2, len(self._named)))
-        if len(self._named) != number:
-            if term.exact is not None and term.exact > 2 and not self._named:
-                block = replace(term.words, text="block")
-                return [replace(term, words=block, bare=False)]
-            raise unclear(term)
-        return list(self._named.values())
-
-    def _is_it(self, term: Term) -> bool:
-        return term.words.text == "it"
-
-    def _meant(self, term: Term, phrase: Phrase | None, carried: bool = False) -> Term:
-        """A name itself; for "it" the one that it can only stand for."""
-        if not self._is_it(term):
-            return term
-        if self._mentioned is not None and not self._mentioned.is_place:
-            mentioned, self._mentioned = self._mentioned, None
-            return mentioned
-        if phrase is not None and phrase.needs_place and self.object and self.object.is_place:
-            return self.object
-        subject = self.subjects[0] if len(self.subjects) == 1 else None
-        found: Term | None = None
-        if self.object is None or self.object.is_place:
-            found = subject
-        elif phrase is None and self.link is not None and self.link[1]:
-            found = subject  # "red not on blue, put it on green"
-        elif phrase is not None and (carried or self._opposite(phrase)):
-            found = self.object
-        elif phrase == UPON and self.link is not None:
-            # On what already carries a block nothing else can be put.
-            before, denied, _ = self.link
-            found = subject if before == phrase and not denied else None
-        if found is None or found.kind is not Kind.THE:
-            raise unclear(term)
-        return found
-
-    def _opposite(self, phrase: Phrase) -> bool:
-        before = self.link[0] if self.link is not None else phrase
-        return before.predicate == phrase.predicate and before.inverse != phrase.inverse
-
-    def _who(self, names: Names, phrase: Phrase | None = None, carried: bool = False) -> list[Term]:
-        """All that are meant by names."""
-        found: list[Term] = []
-        for term in names.terms:
-            if term.words.text == "they":
-                found += self._all_named(term)
-            elif term.bare and term.kind is Kind.EVERY and self._named:
-                number = len(self._named)
-                if number < 2 or 0 < self._before == len(self.relations):
-                    raise unclear(term)
-                found += list(self._named.values())
-                if self._foot is not None and phrase is None:
-                    self._footed = self._foot
-            else:
-                found.append(self._meant(term, phrase, carried))
-        return found
-
-    # Items
+                        raise unclear_words(term.words)
 
     def _relate(self, item: Relate) -> None:
         if item.bare and self._denied and item.subject is not None:
@@ -220,7 +133,7 @@ class Discourse:
                 or not (onto or (same and link.phrase.predicate.name in (UP, ABOVE, LEFT)))
                 or (onto and other.denied)
             ):
-                raise _unclear_words(other.words)
+                raise unclear_words(other.words)
             if any(term.kind is Kind.COUNT and term.bare for term in subjects):
                 raise unclear(subjects[0])
 
@@ -242,186 +155,6 @@ class Discourse:
         if self._taken:
             self._put_down()
         return self._who(item.subject)
-
-    def _link(
-        self, subjects: list[Term], link: Link, denied: bool, item: Relate, carried: bool
-    ) -> None:
-        how = link.how if link.how != "or" else ""
-        written = link.words
-        if how == "clear":
-            self._clear(subjects, denied)
-            return
-        if how == "side":
-            if any(self._is_it(term) for term in (item.subject.terms if item.subject else ())):
-                raise _unclear_words(written)
-            middle = link.names is not None and link.names.terms[0].words.side == "middle"
-            if middle and not all(term.several or term.kind is Kind.NO for term in subjects):
-                raise _unclear_words(written)  # of a tower, or of the places?
-            self._sides = True
-        if how in ("top", "bottom"):
-            self._edge(subjects, link, denied)
-            return
-        if how == "alone":
-            self._alone(subjects, item, denied, link)
-            return
-        if how in ("same", "different"):
-            others = self._who(link.names) if link.names else []
-            blocks = [*subjects, *others]
-            if not others and len(blocks) == 1 and blocks[0].kind is Kind.THE and self.object:
-                blocks.append(self.object)  # "red under blue, in the same stack"
-            pairs = [[*subjects, other] for other in others] if denied and others else [blocks]
-            found = []
-            for pair in pairs:
-                relations = in_one_place(pair, how == "same", denied)
-                if relations is None:
-                    raise _unclear_words(written)
-                found += relations
-            self.relations += found
-            self._name(*blocks)
-            self.subjects, self.object = blocks[:1], others[-1] if others else None
-            self.link = None
-            return
-        if how == "each other":
-            if len(subjects) == 1 and subjects[0].exact == 2:
-                subjects = [subjects[0], subjects[0]]
-            if len(subjects) != 2:
-                raise unclear(subjects[0])
-            self._add(subjects[:1], _BESIDE, denied, written, subjects[1])
-            self._name(*subjects)
-            self.subjects, self.object = subjects, None
-            return
-        if how == "there":
-            if self.object is None or not self.object.is_place:
-                raise _unclear_words(written)
-            phrase = INSIDE
-            if any(term == self.object for term in subjects):
-                raise _unclear_words(written)
-            objects = [self.object]
-        elif how == "where":
-            assert link.names is not None
-            (other,) = link.names.terms
-            below = Term(other.words, described=Described("below", others=(other,)))
-            phrase, objects = UPON, [below]
-        elif how == "elsewhere":
-            if denied or len(subjects) != 1 or subjects[0].kind is not Kind.THE:
-                raise _unclear_words(written)
-            if self.object is not None and self.object.is_place and self.subjects != subjects:
-                objects = [self.object]  # "red in stack1, blue elsewhere"
-            else:
-                own = Described("with", place=True, others=(subjects[0],))
-                objects = [Term(written, described=own)]
-            phrase, denied = INSIDE, True
-        else:
-            if link.phrase is None or link.names is None:
-                raise _unclear_words(written)
-            phrase = link.phrase
-            objects = self._objects(link, denied, subjects, carried)
-        for one in objects:
-            if one.described and one.described.how == "other" and not one.described.others:
-                one = replace(one, described=replace(one.described, others=tuple(subjects)))
-            self._add(subjects, phrase, denied, written, one)
-            if link.adjacent:
-                if denied:
-                    raise _unclear_words(written)
-                self._add(subjects, _BESIDE, False, written, one)
-        if self._footed is not None and objects[-1].is_place and not denied:
-            self._add([self._footed], UPON, False, written, objects[-1])
-            self._footed = None
-        self.subjects, self.object = list(subjects), objects[-1]
-        self.link = (phrase, denied, written)
-
-    def _objects(
-        self, link: Link, denied: bool, subjects: Sequence[Term], carried: bool
-    ) -> list[Term]:
-        assert link.names is not None and link.phrase is not None
-        names = link.names
-        all_none = all(term.kind is Kind.NO for term in subjects)
-        places = all(term.kind is Kind.THE and term.is_place for term in names.terms)
-        if names.either and places and link.phrase == INSIDE and not (denied or all_none):
-            among = tuple(term.words for term in names.terms)
-            return [replace(names.terms[0], kind=Kind.COUNT, among=among)]
-        if names.denied or (names.either and not (denied or all_none)):
-            raise unclear(names.terms[0])
-        if any(term.kind is Kind.NO for term in names.terms):
-            raise unclear(names.terms[0])
-        objects = self._who(names, link.phrase, carried)
-        if denied and len(objects) > 1 and not names.either and not link.denied:
-            raise unclear(objects[1])  # not left of red and blue: of neither, or not of both?
-        positive = not (denied or all_none)
-        if positive and len(objects) > 1 and link.phrase == UPON:
-            raise unclear(objects[1])  # nothing stands directly on two
-        if positive and len(objects) > 1 and all(term.is_place for term in objects):
-            some = all(term.kind is Kind.COUNT for term in subjects)
-            if not some:
-                raise unclear(objects[1])
-        return objects
-
-    def _edge(self, subjects: Sequence[Term], link: Link, denied: bool) -> None:
-        place = self.object
-        if link.names is not None:
-            (place,) = self._who(link.names, INSIDE)
-        elif self._mentioned is place:
-            self._mentioned = None
-        if place is None or not place.is_place or place.is_every_place or denied:
-            raise _unclear_words(link.words)
-        if len(subjects) != 1 or subjects[0].kind is not Kind.THE or subjects[0].is_place:
-            raise _unclear_words(link.words)
-        upon = link.words.text.startswith(("on", "up", "right on"))
-        spoken = self.subjects[0] if len(self.subjects) == 1 else None
-        other = spoken is not None and spoken.words.text != subjects[0].words.text
-        if link.names is None and upon and other and spoken and spoken.kind is Kind.THE:
-            raise unclear(subjects[0])  # "red in stack1, blue on top": of it, or of the stack?
-        bottom = link.how == "bottom"
-        phrase = UPON if bottom else INSIDE
-        self._add(subjects, phrase, False, link.words, place)
-        if not bottom:
-            self._nothing_on(subjects[0])
-        self.subjects, self.object = list(subjects), place
-        self.link = (phrase, False, link.words)
-
-    def _alone(self, subjects: Sequence[Term], item: Relate, denied: bool, link: Link) -> None:
-        places = [
-            term
-            for other in item.links
-            if other.names is not None and other.phrase is not None
-            for term in other.names.terms
-            if term.is_place
-        ]
-        if denied or any(term.kind is not Kind.THE or term.is_place for term in subjects):
-            raise _unclear_words(link.words)
-        if places:
-            found = none_but(subjects, INSIDE, False, places[0])
-            assert found is not None
-            self.relations.append(found)
-            return
-        if len(subjects) > 1:
-            raise _unclear_words(link.words)
-        others = Term(Words("block", subjects[0].words.offset), Kind.EVERY, but=tuple(subjects))
-        above = Phrase(PREDICATES[ABOVE])
-        self.relations.append(ParsedRelation(others, above, subjects[0], negated=True))
-        self.relations.append(ParsedRelation(subjects[0], above, others, negated=True))
-        self._name(*subjects)
-        self.subjects, self.object = list(subjects), None
-
-    def _nothing_on(self, term: Term) -> None:
-        nothing = Term(Words("block", term.words.offset), Kind.NO, 0, 0)
-        self.relations.append(ParsedRelation(nothing, UPON, term))
-
-    def _clear(self, terms: Sequence[Term], denied: bool) -> None:
-        for term in terms:
-            if term.kind is Kind.NO:
-                term, denied = replace(term, kind=Kind.EVERY), not denied
-            if term.kind not in (Kind.THE, Kind.EVERY):
-                raise unclear(term)
-            if denied:
-                some = Term(Words("block", term.words.offset), Kind.COUNT)
-                place = term.is_place or term.words.text == "stack"
-                phrase = INSIDE if place else UPON
-                self.relations.append(ParsedRelation(some, phrase, term))
-            else:
-                self._nothing_on(term)
-            self._name(term)
-        self.subjects, self.object = list(terms), None
 
     def _mention(self, item: Mention) -> None:
         self._put_down()
@@ -489,98 +222,6 @@ class Discourse:
         self._name(*terms)
         self._denied = False
 
-    # Relations
-
-    def _name(self, *terms: Term) -> None:
-        for term in terms:
-            if term.kind is Kind.THE and not term.is_place and not term.described:
-                self._named.setdefault(term.words.text, term)
-
-    def _add(
-        self, subjects: Sequence[Term], phrase: Phrase, denied: bool, written: Words, object_: Term
-    ) -> None:
-        bounded = all(term.kind is Kind.COUNT and not term.least for term in subjects)
-        none = all(term.kind is Kind.NO for term in subjects)
-        if is_any_place(object_) and (bounded or none):
-            object_ = replace(object_, kind=Kind.EVERY)  # "at most two blocks in any stack"
-        if is_any_place(object_) and not (bounded or none):
-            raise unclear(object_)
-        if denied and any(term.kind in (Kind.NO, Kind.COUNT) for term in subjects):
-            raise unclear(subjects[0])
-        if denied and len(subjects) == 1 and subjects[0].kind is Kind.EVERY:
-            one = subjects[0]
-            if one.words.text == "block" and not one.but and not one.others and not one.only:
-                none_of = replace(one, kind=Kind.NO, least=0, most=0, bare=False)
-                subjects, denied = [none_of], False
-        if len(subjects) > 1 and subjects[-1].kind is Kind.NO and subjects[-1].others:
-            if set(self._named) - {term.words.text for term in subjects}:
-                raise unclear(subjects[-1])  # is who else was named meant as well?
-            subjects = [replace(subject, only=True) for subject in subjects[:-1]]
-        if only := [subject for subject in subjects if subject.only]:
-            self._only(subjects, phrase, denied, object_, only[0])
-            subjects = [replace(subject, only=False) for subject in subjects]
-        for subject in subjects:
-            subject = self._among_others(subject, phrase, object_)
-            if subject.kind in (Kind.EVERY, Kind.COUNT) and not subject.others:
-                self._kinds.append(subject)
-            for term in (subject, object_):
-                if self._is_it(term):
-                    raise unclear(term)
-                self._name(term)
-            check_places(subject, phrase, object_, written.text)
-            meaning = phrase
-            together = subject.several or len(subjects) > 1
-            if together and object_.is_place and phrase == UPON and not denied:
-                # Several blocks on a place cannot all stand directly on it.
-                meaning = phrase._replace(predicate=PREDICATES[ABOVE])
-            self.relations.append(ParsedRelation(subject, meaning, object_, denied))
-
-    def _among_others(self, subject: Term, phrase: Phrase, object_: Term) -> Term:
-        """ "the rest" as all but those that were named."""
-        before = self.subjects[0] if len(self.subjects) == 1 else None
-        counted = before is not None and before.kind is Kind.COUNT and before.most == before.least
-        if subject.kind is Kind.COUNT and subject.bare:
-            if before is None or before.kind is not Kind.COUNT or before.others:
-                if not object_.is_place:
-                    raise unclear(subject)
-                return replace(subject, bare=False)  # "at most two per stack"
-            return replace(subject, words=before.words, bare=False)
-        if subject.kind is Kind.EVERY and subject.others and subject.exact and counted:
-            assert before is not None
-            # "three in stack1, the other two in stack2": there are no more of them than these.
-            number = subject.exact
-            return replace(
-                before, least=number, most=number, exact=before.least + number, bare=False
-            )
-        if not subject.others:
-            return subject
-        if subject.kind is Kind.NO and phrase == UPON and not object_.is_place:
-            on_it = [
-                said.subject
-                for said in self.relations
-                if isinstance(said, ParsedRelation)
-                and said.phrase == UPON
-                and said.object.words.text == object_.words.text
-                and not said.negated
-            ]
-            return replace(subject, others=False, but=tuple(on_it))
-        spoken = [*self._named.values(), *self._kinds]
-        if not spoken or any(term.kind is Kind.COUNT for term in spoken):
-            raise unclear(subject)
-        if subject.kind is Kind.NO and set(self._named) != {
-            term.words.text for term in self.subjects
-        }:
-            raise unclear(subject)  # who else was named may be meant as well
-        return replace(subject, others=False, but=tuple(spoken))
-
-    def _only(
-        self, subjects: Sequence[Term], phrase: Phrase, denied: bool, object_: Term, one: Term
-    ) -> None:
-        found = none_but(subjects, phrase, denied, object_)
-        if found is None:
-            raise unclear(one)
-        self.relations.append(found)
-
 
 def _scoped(links: tuple[Link, ...], denied: bool, none: bool) -> tuple[Link, ...]:
     """Links with what is denied of them all; raises InvalidGoalError where it is not clear.
@@ -594,15 +235,9 @@ def _scoped(links: tuple[Link, ...], denied: bool, none: bool) -> tuple[Link, ..
     if (denied and others and ways != {True}) or ((denied or none) and any(
         link.denied for link in links
     )):  # fmt: skip
-        raise _unclear_words(links[-1].words)  # not on blue and not on green, or not on both?
+        raise unclear_words(links[-1].words)  # not on blue and not on green, or not on both?
     if denied or none or True not in ways:
         return links
     if not first.denied:
-        raise _unclear_words(first.words)
+        raise unclear_words(first.words)
     return tuple(replace(link, denied=True) for link in links)
-
-
-def _unclear_words(words: Words) -> InvalidGoalError:
-    return InvalidGoalError(
-        "it is not clear what this is said of; write every relation out", words.offset, words.text
-    )

@@ -47,9 +47,9 @@ _REASON: Final = frozenset({
 #: What a word may be that is part of a sentence which says nothing of blocks.
 _CHAT: Final = frozenset({
     "UNKNOWN", "I", "YOU", "A", "THE", "BE", "MUST", "CAN", "MAY", "DO", "GOOD", "PERSONNOUN",
-    "PAST", "PLEASEME", "POSSESSIVE", "NOW", "STEP", "GOAL", "ADJ", "HIGH", "MODAL", "HAS", "GIVENFOR",
-    "INPLACE", "TOSIDE", "TOSPOT", "OFOF", "OF", "LIKE", "AS", "PER", "IN", "PLAINUP", "FIRST",
-    "NEEDNOT", "END", "FINAL", "VIEW", "LET", "LETTING", "REASONWORD",
+    "PAST", "PLEASEME", "POSSESSIVE", "NOW", "STEP", "GOAL", "ADJ", "HIGH", "MODAL", "HAS",
+    "GIVENFOR", "INPLACE", "TOSIDE", "TOSPOT", "OFOF", "OF", "LIKE", "AS", "PER", "IN", "PLAINUP",
+    "FIRST", "NEEDNOT", "END", "FINAL", "VIEW", "LET", "LETTING", "REASONWORD",
 })  # fmt: skip
 _JOINING: Final = frozenset({"and", "then", "but", "while", "tomorrow", "later", "on", "onto"})
 #: For every word, by kind: where what begins there ends, what it is, and at what cost.
@@ -68,7 +68,9 @@ def _index(phrases: tuple[tuple[tuple[str, ...], Phrase], ...]) -> _Index:
         index.setdefault(color, []).append(("COLOR", (color,), color, None))
     known = dict(phrases)
     for words, means in RELATED:
-        index.setdefault(words[0], []).append(("RELATION", words, means, known[tuple(means.split())]))
+        index.setdefault(words[0], []).append(
+            ("RELATION", words, means, known[tuple(means.split())])
+        )
     for words, phrase in phrases:
         index.setdefault(words[0], []).append(("RELATION", words, " ".join(words), phrase))
     return index

@@ -139,16 +139,8 @@ def _denied(to: Link) -> Link | None:
     return replace(to, denied=True)
 
 
-def _instead_of(m: Link) -> tuple[Link, ...]:
-    return (m,)
-
-
 def _stays_off(o: Link) -> Link | None:
     return o if o.words.text in ("off", "off of", "out of") else None
-
-
-def _one(to: Link) -> tuple[Link, ...]:
-    return (to,)
 
 
 def _chain(to: Link, m: tuple[Link, ...], w: Word | None = None) -> tuple[Link, ...] | None:
@@ -190,10 +182,6 @@ def _neither(to: Link, m: Link) -> tuple[Link, ...]:
 
 def _neither_of(w: Word, levels: Term, m: Term) -> tuple[Link, ...]:
     return (Link(words_of(w), w.phrase, Names((levels, m)), denied=True),)
-
-
-def _corrected(m: Link) -> tuple[Link, ...]:
-    return (m,)
 
 
 def _corrected_place(to: Link, p: Term) -> tuple[Link, ...] | None:

@@ -11,27 +11,7 @@ from ..terms import Term
 from .meaning import Row
 
 
-def _upwards() -> tuple[str, bool]:
-    return UP, True
-
-
-def _downwards() -> tuple[str, bool]:
-    return UP, False
-
-
-def _rightwards() -> tuple[str, bool]:
-    return LEFT, True
-
-
-def _leftwards() -> tuple[str, bool]:
-    return LEFT, False
-
-
 def _in_order(b: Term, r: tuple[Term, ...] = (), c: Term | None = None) -> tuple[Term, ...]:
-    return (b, *r) if c is None else (b, c)
-
-
-def _unseparated(b: Term, r: tuple[Term, ...] = (), c: Term | None = None) -> tuple[Term, ...]:
     return (b, *r) if c is None else (b, c)
 
 
@@ -51,10 +31,6 @@ def row_of(predicate: str, names: tuple[Term, ...], place: Term | None = None) -
 # "red at the bottom, then blue, green on top"
 
 
-def _bottom(b: Term) -> tuple[str, Term]:
-    return "bottom", b
-
-
 def _bottom_of(b: Term, p: Term) -> tuple[Term, Term]:
     return b, p
 
@@ -65,38 +41,6 @@ def _row_from(
     b: tuple[str, Term] | None = None,
 ) -> Row | None:
     return _leveled((("bottom", a[0]), *(levels or (b,))), a[1])  # type: ignore[arg-type]
-
-
-def _top(b: Term) -> tuple[str, Term]:
-    return "top", b
-
-
-def _middle(b: Term) -> tuple[str, Term]:
-    return "middle", b
-
-
-def _then(b: Term) -> tuple[str, Term]:
-    return "then", b
-
-
-def _under(b: Term) -> tuple[str, Term]:
-    return "under", b
-
-
-def _started(b: Term) -> tuple[str, Term]:
-    return "bottom", b
-
-
-def _finished(b: Term) -> tuple[str, Term]:
-    return "top", b
-
-
-def _added(b: Term) -> tuple[str, Term]:
-    return "then", b
-
-
-def _upon(b: Term) -> tuple[str, Term]:
-    return "upon", b
 
 
 def _levels(

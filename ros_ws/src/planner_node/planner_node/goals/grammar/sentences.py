@@ -6,11 +6,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..terms import Kind, Term
-from .clausal import Verb, relate
 from .lattice import Word
 from .lexicon import BAD
 from .meaning import Again, Change, Item, Mention, Names, Relate, Row, Take
 from .nominal import UPON, words_of
+from .verbal import Verb, relate
 
 #: Ends of words that tell how something is, or was.
 _TELLING = ("ed", "en", "ly", "less", "ing", "ful")
@@ -21,20 +21,10 @@ _TELLING = ("ed", "en", "ly", "less", "ing", "ful")
 # What stands in front of a wish
 
 
-def _frame() -> bool:
-    return False
-
-
-def _frame_denied() -> bool:
-    return True
-
-
-def _more_frames(f: bool, c: Item) -> Item | None:
-    return _under(f, c)
-
-
-def _under(denied: bool, item: Item) -> Item | None:
-    if not denied:
+def _under(c: Item, f: bool = False) -> Item | None:
+    """A wish, or what is not wished."""
+    item = c
+    if not f:
         return item
     if not isinstance(item, Relate) or item.denied or item.subject is None:
         return None
@@ -42,14 +32,6 @@ def _under(denied: bool, item: Item) -> Item | None:
     if subject.denied or any(term.only or term.kind is Kind.NO for term in subject.terms):
         return None
     return relate(subject, item.links, Verb(denied=True))
-
-
-def _framed(f: bool, c: Item) -> Item | None:
-    return _under(f, c)
-
-
-def _to_suffix(c: Item, f: bool = False) -> Item | None:
-    return _under(f, c)
 
 
 # What says nothing
@@ -112,20 +94,8 @@ def _to_side_word(w: Word) -> Word | None:
 # Several of them
 
 
-def _item(c: Item) -> tuple[Item, ...]:
-    return (c,)
-
-
-def _instead(c: Item) -> tuple[Item, ...]:
-    return (c,)
-
-
 def _mention(b: Term) -> tuple[Item, ...]:
     return (Mention(b),)
-
-
-def _idle_item() -> tuple[Item, ...]:
-    return ()
 
 
 #: An item, and how it is joined to what stands in front of it.
@@ -143,26 +113,6 @@ def _aside_word(w: Word) -> Word | None:
 
 def _beside_aside(r: tuple[Joined, ...] = (), i: tuple[Item, ...] = ()) -> tuple[Joined, ...]:
     return r or (("", i),)
-
-
-def _but() -> str:
-    return "but"
-
-
-def _end() -> str:
-    return "."
-
-
-def _pause() -> str:
-    return ","
-
-
-def _with() -> str:
-    return "with"
-
-
-def _heading_first(r: tuple[Joined, ...]) -> tuple[Joined, ...]:
-    return r
 
 
 def _more(i: tuple[Item, ...], r: tuple[Joined, ...], s: str = "") -> tuple[Joined, ...] | None:
