@@ -37,6 +37,7 @@ def mended(word: str, known: frozenset[str]) -> tuple[str, ...]:
             near.setdefault(0.7, set()).add(other)
         elif (
             (len(other) > 3 or other in COLORS)
+            and len(word) > 2
             and word[0] == other[0]
             and _vowelless(word) == _vowelless(other)
         ):

@@ -61,12 +61,14 @@ _Index = dict[str, list[tuple[str, tuple[str, ...], str, Phrase | None]]]
 @lru_cache(maxsize=4)
 def _index(phrases: tuple[tuple[tuple[str, ...], Phrase], ...]) -> _Index:
     index: _Index = {}
+    known = dict(phrases)
     for kind, listed in ENTRIES.items():
         for words, means in listed:
+            if kind == "AWAYFROM" and words in known:
+                continue  # somebody's own predicate
             index.setdefault(words[0], []).append((kind, words, means, None))
     for color in (*COLORS, *MORE_COLORS):
         index.setdefault(color, []).append(("COLOR", (color,), color, None))
-    known = dict(phrases)
     for words, means in RELATED:
         index.setdefault(words[0], []).append(
             ("RELATION", words, means, known[tuple(means.split())])

@@ -15,6 +15,15 @@ def _one(t: Term) -> Names:
     return Names((t,))
 
 
+def _unjoined(t: Term, u: Term) -> Names | None:
+    """ "red blue", but not where one of them may be another word with a slip."""
+    return _joined((t, u)) if not any(map(_slipped, (t.words, u.words))) else None
+
+
+def _slipped(words: Words) -> bool:
+    return words.stop - words.offset != len(words.text)
+
+
 def _pair(t: Term, u: Term) -> Names | None:
     return _joined((t, u))
 

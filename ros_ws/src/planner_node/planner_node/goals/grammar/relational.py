@@ -89,7 +89,7 @@ def _at_bottom(w: Word, p: Term | None = None) -> Link | None:
 def _edge(w: Word, how: str, p: Term | None) -> Link | None:
     if p is not None and not (p.is_place or p.words.text == "it"):
         return None
-    if p is not None and not p.is_place and w.text.startswith(("on", "up")):
+    if p is not None and not p.is_place and w.text.startswith(("on", "up", "right on")):
         return None
     return Link(words_of(w), how=how, names=Names((p,)) if p else None)
 

@@ -42,7 +42,7 @@ _SHORT: Final = {
     "there's": "there is", "theres": "there is", "youd": "you would", "teh": "the", "hte": "the",
     "th": "the", "thats it": "that is it", "y'all": "you", "d'you": "do you", "atleast": "at least",
     "alot": "a lot", "infront": "in front", "upside-down": "upside down", "nr": "number",
-    "der": "the", "die": "the", "das": "the", "upto": "up to", "pt": "put",
+    "der": "the", "die": "the", "das": "the", "upto": "up to", "pt": "put", "topof": "top of",
     "whats": "what is", "itll": "it will", "hes": "he is", "whos": "who is",
 }  # fmt: skip
 _TAILS: Final = {"d": "would", "ll": "will", "re": "are", "ve": "have", "m": "am", "s": "is"}
