@@ -111,15 +111,15 @@ def lattice_of(tokens: Sequence[Token], literals: Collection[str]) -> Lattice:
         for kind, said, cost in _kinds(token.text, words[start], literals, alone):
             word = Word(said, said, token.offset, token.end)
             here.setdefault(kind, []).append((start + 1, word, cost))
-        said = Word(token.text, token.text, token.offset, token.end)
+        itself = Word(token.text, token.text, token.offset, token.end)
         if token.text not in BAD | _JOINING:
             if _REASON.isdisjoint(here):
-                here["REASONWORD"] = [(start + 1, said, 0.0)]
+                here["REASONWORD"] = [(start + 1, itself, 0.0)]
             spoken = {kind for kind in here if not kind.startswith("'")}
             if token.text in ("in", "at", "to"):
                 spoken.discard("RELATION")
             if spoken <= _CHAT:
-                here["CHATWORD"] = [(start + 1, said, 0.0)]
+                here["CHATWORD"] = [(start + 1, itself, 0.0)]
         found.append(here)
         fillers.append(skips)
     return _with_fillers(found, fillers, [token.text for token in tokens])

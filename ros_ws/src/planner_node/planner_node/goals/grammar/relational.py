@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from scene_graph import ABOVE, BESIDE, FRONT, LEFT
+from scene_graph import ABOVE, BESIDE, FRONT, LEFT, PREDICATES, Phrase
 
 from ..terms import Kind, Term
 from .lattice import Word
@@ -131,6 +131,22 @@ def _off(w: Word, who: Names) -> Link | None:
 
 def _away(w: Word, p: Term) -> Link:
     return Link(words_of(w), INSIDE, Names((p,)), denied=True)
+
+
+def _higher(w: Word, who: Names) -> Link:
+    return Link(words_of(w), Phrase(PREDICATES[ABOVE]), who)
+
+
+def _lower(w: Word, who: Names) -> Link:
+    return Link(words_of(w), Phrase(PREDICATES[ABOVE], inverse=True), who)
+
+
+def _on_its_side(to: Link, s: Word) -> tuple[Link, ...] | None:
+    """ "beside blue, on its left"."""
+    beside = to.phrase is not None and to.phrase.predicate.name == BESIDE
+    if not beside or s.means not in ("left", "right"):
+        return None
+    return (to, replace(to, phrase=Phrase(PREDICATES[LEFT], inverse=s.means == "right")))
 
 
 def _denied(to: Link) -> Link | None:
