@@ -133,10 +133,6 @@ def _away(w: Word, p: Term) -> Link:
     return Link(words_of(w), INSIDE, Names((p,)), denied=True)
 
 
-def _higher(w: Word, who: Names) -> Link:
-    return Link(words_of(w), Phrase(PREDICATES[ABOVE]), who)
-
-
 def _lower(w: Word, who: Names) -> Link:
     return Link(words_of(w), Phrase(PREDICATES[ABOVE], inverse=True), who)
 
