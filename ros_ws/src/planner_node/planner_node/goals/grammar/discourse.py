@@ -111,10 +111,8 @@ class Discourse(Linking):
                 subjects = [self.object] if self.object else subjects
             self._link(subjects, link, denied != link.denied, item, carried)
             carried = not link.chained
-        if item.about and item.links[-1].names is not None:
-            names = self._who(item.links[-1].names, item.links[-1].phrase)
-            if not names[-1].is_place:
-                self.subjects, self.object = names[-1:], None
+        if item.about and self.object is not None and not self.object.is_place:
+            self.subjects, self.object = [self.object], None
         self._denied = item.denied and not item.about
 
     def _check_chain(self, subjects: Sequence[Term], links: Sequence[Link]) -> None:
