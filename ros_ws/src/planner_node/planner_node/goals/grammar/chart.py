@@ -10,17 +10,24 @@ function that returns None refuses what it was given. No rule may begin with its
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
 #: How many meanings of a category between two words are kept.
 _KEPT: Final = 6
 
+#: How many meanings are built before it is given up: a long text that may be read in many ways.
+_MOST: Final = 60_000
+
 #: Where something ends, what it means, and at what cost.
 Found = tuple[int, Hashable, float]
 #: For every word, by category, what begins there.
 Lattice = Sequence[Mapping[str, Sequence[Found]]]
+
+
+class TooManyReadings(Exception):
+    """A text may be read in too many ways to look at them all."""
 
 
 @dataclass(frozen=True)
@@ -39,9 +46,14 @@ class _Rule:
 
 
 class Grammar:
-    """Rules by category."""
+    """Rules by category.
 
-    def __init__(self) -> None:
+    Args:
+        last: categories that are looked for only where they reach to the end.
+    """
+
+    def __init__(self, last: Collection[str] = ()) -> None:
+        self.last = frozenset(last)
         self._rules: dict[str, list[_Rule]] = {}
         self._first: dict[str, frozenset[str]] = {}
 
@@ -52,7 +64,11 @@ class Grammar:
         self._first.clear()
 
     def parses(self, category: str, lattice: Lattice, start: int = 0) -> list[Found]:
-        """All readings from a word on, the cheapest first."""
+        """All readings from a word on, the cheapest first.
+
+        Raises:
+            TooManyReadings: there are too many of its parts.
+        """
         return _Chart(self, lattice).found(category, start)
 
     def rules(self, category: str) -> Sequence[_Rule]:
@@ -96,6 +112,7 @@ class _Chart:
         self._grammar = grammar
         self._lattice = lattice
         self._known: dict[tuple[str, int], list[Found]] = {}
+        self._left = _MOST
 
     def found(self, category: str, start: int) -> list[Found]:
         key = (category, start)
@@ -112,8 +129,14 @@ class _Chart:
         if self._grammar.first(category).isdisjoint(here):
             return []
         best: dict[tuple[int, Hashable], float] = {}
+        last = category in self._grammar.last
         for rule in rules:
             for end, values, cost in self._sequence(rule.parts, start):
+                self._left -= 1
+                if self._left < 0:
+                    raise TooManyReadings
+                if last and end != len(self._lattice):
+                    continue
                 meaning = rule.build(**values)
                 if meaning is None:
                     continue

@@ -12,6 +12,7 @@ from ...errors import InvalidGoalError, PlannerError
 from ..example import EXAMPLE, no_relation
 from ..parsed import Changed, Parsed, Said
 from ..terms import Kind, Words
+from .chart import TooManyReadings
 from .discourse import Discourse
 from .lattice import lattice_of
 from .rules import GRAMMAR
@@ -72,7 +73,14 @@ def _senseless(said: Said) -> bool:
 def _parses(tokens: Sequence[Token]) -> list[tuple[float, tuple[Joined, ...]]]:
     """What the whole of some words may mean, the cheapest first."""
     lattice = lattice_of(tokens, _LITERALS)
-    found: list[Any] = GRAMMAR.parses("TEXT", lattice)
+    try:
+        found: list[Any] = GRAMMAR.parses("TEXT", lattice)
+    except TooManyReadings:
+        raise InvalidGoalError(
+            f"this is too long to be read as one goal ({len(tokens)} words); say it in shorter parts",
+            tokens[0].offset,
+            f"{tokens[0].text} … {tokens[-1].text}",
+        ) from None
     return [(cost, joined) for end, joined, cost in found if end == len(lattice)]
 
 

@@ -44,7 +44,7 @@ _MODULES: Final = {
 
 
 def _grammar() -> Grammar:
-    grammar = Grammar()
+    grammar = Grammar(last=("ITEMS", "TEXT"))
     for line in Path(__file__).with_name("grammar.txt").read_text(encoding="utf-8").splitlines():
         if not line or line.startswith("#"):
             continue
