@@ -42,8 +42,14 @@ def resolve_name(words: Words, names: Sequence[str], stack_count: int | None = N
     return candidates[0]
 
 
-def fitting_names(words: Words, names: Sequence[str], stack_count: int | None) -> list[str]:
-    """All that a name fits; raises UnknownObjectError where that is nothing."""
+def fitting_names(
+    words: Words, names: Sequence[str], stack_count: int | None, every: bool = False
+) -> list[str]:
+    """All that a name fits; raises UnknownObjectError where that is nothing.
+
+    Args:
+        every: "red box" is red_box_2 as well, not only the one of just that name.
+    """
     place = place_named(words, stack_count)
     if place is not None:
         return [place]
@@ -51,7 +57,7 @@ def fitting_names(words: Words, names: Sequence[str], stack_count: int | None) -
     known = {part for name in by_full_name for part in name.split("_")}
     parts = [part for part in re.split(r"[ _-]+", words.text) if part]
     for right in (parts, _mended(parts, known)):
-        if "_".join(right) in by_full_name:
+        if "_".join(right) in by_full_name and not (every and "_" not in words.text):
             return [by_full_name["_".join(right)]]
         wanted = {part if part in known else SYNONYMS.get(part, part) for part in right} - NOUNS
         candidates = sorted(name for name in names if wanted <= set(name.lower().split("_")))

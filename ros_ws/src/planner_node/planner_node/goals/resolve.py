@@ -114,8 +114,8 @@ def _resolve_term(term: Term, scene: _Scene) -> tuple[str, ...]:
     """The one that is meant, or all that fit where it says how many of them."""
     names, stack_count = scene.names, scene.stack_count
     if term.described is not None:
-        fitting = functools.partial(fitting_names, term.words, names, stack_count)
-        return scene.known(term.words).described(term, fitting)
+        all_fitting = functools.partial(fitting_names, term.words, names, stack_count, every=True)
+        return scene.known(term.words).described(term, all_fitting)
     if term.kind is Kind.THE:
         return (resolve_name(term.words, names, stack_count),)
     left_out = {name for one in term.but for name in _left_out(one, term, scene)}
@@ -126,9 +126,8 @@ def _resolve_term(term: Term, scene: _Scene) -> tuple[str, ...]:
         return tuple(name for name in every if name not in left_out)
     if term.among:
         return tuple(resolve_name(words, names, stack_count) for words in term.among)
-    found = tuple(
-        name for name in fitting_names(term.words, names, stack_count) if name not in left_out
-    )
+    fitting = fitting_names(term.words, names, stack_count, every=True)
+    found = tuple(name for name in fitting if name not in left_out)
     if term.exact is not None and len(found) != term.exact:
         raise AmbiguousObjectError(
             term.words.text,
@@ -143,7 +142,7 @@ def _left_out(term: Term, every: Term, scene: _Scene) -> tuple[str, ...]:
     """Those that "every box except the red one" leaves out: they are boxes too, if any fit."""
     if not every.is_place and term.described is None:
         try:
-            group = fitting_names(every.words, scene.names, scene.stack_count)
+            group = fitting_names(every.words, scene.names, scene.stack_count, every=True)
             return _resolve_term(term, replace(scene, names=group))
         except UnknownObjectError:
             pass

@@ -24,6 +24,8 @@ _LITERALS: Final = GRAMMAR.literals()
 _AS_GOOD: Final = 0.45
 #: How much dearer a reading may be than one that makes no sense.
 _TOLERATED: Final = 0.9
+#: How many words and signs a goal may have.
+_LONGEST: Final = 200
 #: What it costs at least to read words that are not known.
 _STRANGE: Final = 2.0
 
@@ -72,16 +74,22 @@ def _senseless(said: Said) -> bool:
 
 def _parses(tokens: Sequence[Token]) -> list[tuple[float, tuple[Joined, ...]]]:
     """What the whole of some words may mean, the cheapest first."""
+    if len(tokens) > _LONGEST:
+        raise _too_long(tokens)
     lattice = lattice_of(tokens, _LITERALS)
     try:
         found: list[Any] = GRAMMAR.parses("TEXT", lattice)
-    except TooManyReadings:
-        raise InvalidGoalError(
-            f"this is too long to be read as one goal ({len(tokens)} words); say it in shorter parts",
-            tokens[0].offset,
-            f"{tokens[0].text} … {tokens[-1].text}",
-        ) from None
+    except (TooManyReadings, RecursionError):
+        raise _too_long(tokens) from None
     return [(cost, joined) for end, joined, cost in found if end == len(lattice)]
+
+
+def _too_long(tokens: Sequence[Token]) -> InvalidGoalError:
+    return InvalidGoalError(
+        f"{len(tokens)} words are too long to be read as one goal; say it in shorter parts",
+        tokens[0].offset,
+        f"{tokens[0].text} … {tokens[-1].text}",
+    )
 
 
 def _not_understood(text: str, tokens: Sequence[Token], parsed: bool) -> InvalidGoalError:
