@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The words that goals are made of, by what kind of word they are; see ``lexicon.txt``."""
+"""The words that goals are made of, by their kinds; see ``lexicon_of_clauses.txt``."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ MORE_COLORS: Final = frozenset({
 
 
 def _entries() -> dict[str, list[tuple[tuple[str, ...], str]]]:
-    text = Path(__file__).with_suffix(".txt").read_text(encoding="utf-8")
+    paths = sorted(Path(__file__).parent.glob("lexicon_*.txt"))
+    text = "".join(path.read_text(encoding="utf-8") for path in paths)
     found: dict[str, list[tuple[tuple[str, ...], str]]] = {}
     for line in text.replace("\n ", " ").splitlines():
         kind, colon, listed = line.partition(": ")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The grammar of goals, from ``grammar.txt``."""
+"""The grammar of goals, from ``rules_of_names.txt`` and its neighbours."""
 
 from __future__ import annotations
 
@@ -45,7 +45,8 @@ _MODULES: Final = {
 
 def _grammar() -> Grammar:
     grammar = Grammar(last=("ITEMS", "TEXT"))
-    for line in Path(__file__).with_name("grammar.txt").read_text(encoding="utf-8").splitlines():
+    paths = sorted(Path(__file__).parent.glob("rules_*.txt"))
+    for line in "".join(path.read_text(encoding="utf-8") for path in paths).splitlines():
         if not line or line.startswith("#"):
             continue
         match = _LINE.fullmatch(line)
