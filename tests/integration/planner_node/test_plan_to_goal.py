@@ -66,6 +66,30 @@ def test_the_goal_is_published_as_it_was_asked_for(bench: Any) -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("goal", "wanted"),
+    [
+        ("swap red and blue", {("red_box", "blue_box"), ("blue_box", "stack0"),
+                               ("green_box", "stack1")}),
+        ("put green where blue is", {("green_box", "red_box")}),
+        ("red on the other stack", set()),
+    ],
+)  # fmt: skip
+def test_a_goal_may_depend_on_how_the_blocks_stand(
+    bench: Any, goal: str, wanted: set[tuple[str, str]]
+) -> None:
+    assert bench.world.stacks == (("red_box", "blue_box"), ("green_box",), ())
+    answer = bench.client.plan(goal)
+    if not wanted:  # there are two others
+        assert answer.status == Status.AMBIGUOUS_OBJECT
+        assert "stack1, stack2" in answer.message
+        return
+    assert answer.status == Status.SUCCESS, answer.message
+    assert {(item.subject, item.object) for item in answer.plan.goal} == wanted
+    last = {(item.subject, item.object) for item in answer.states[-1].relations}
+    assert wanted <= last
+
+
 def test_planning_alone_moves_nothing(bench: Any) -> None:
     bench.client.plan("red on green")
     answer = bench.client.plan("blue on green", execute=True)

@@ -154,7 +154,7 @@ def read_goal(request: Any, interpret: Interpret) -> ResolveGoal:
     if not has_image:
         parsed = parse_goal(request.goal)
         return lambda seen, rows=ONE_ROW: resolve_goal(
-            parsed, [name for stack in seen for name in stack], len(seen), rows
+            parsed, [name for stack in seen for name in stack], len(seen), rows, seen
         )
     if request.goal.strip():
         raise InvalidGoalError("there is a goal text and a goal image; give one of them", 0)

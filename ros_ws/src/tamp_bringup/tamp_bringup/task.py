@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from planner_node.errors import UnknownObjectError
-from planner_node.goals import Kind, parse_goal, resolve_name
+from planner_node.goals import parse_goal, resolve_name
 from scene_graph import BASIC_COLORS, BOX, Relation, Stacks, object_name, up_relations
 from sim_node.layouts import MAX_BLOCKS, random_arrangement, random_layout
 
@@ -76,9 +76,8 @@ def scene_for_goal(goal: str, seed: int, blocks: int | None = None) -> tuple[int
     if not goal:
         return seed, blocks or DEFAULT_BLOCKS
     boxes = [object_name(color, BOX) for color in BASIC_COLORS]
-    terms = [term for item in parse_goal(goal) for term in (item.subject, item.object)]
     named: set[str] = set()
-    for words in (term.words for term in terms if term.kind is Kind.THE and not term.is_place):
+    for words in parse_goal(goal).block_names:
         try:
             named.add(resolve_name(words, boxes))
         except UnknownObjectError as error:

@@ -71,7 +71,7 @@ def write_pddl(arguments: Sequence[str] | None = None) -> int:
         scene = _seen(arguments, options.timeout) if state is None else None
         stacks = scene.stacks if scene is not None else state or ()
         names = [name for stack in stacks for name in stack]
-        goal = resolve_goal(parse_goal(options.goal), names, len(stacks))
+        goal = resolve_goal(parse_goal(options.goal), names, len(stacks), now=stacks)
         check_contradictions(goal, len(stacks))
         stability = None
         if scene is not None:

@@ -1,26 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Goals: what people type, what it means in a scene, and what excludes itself.
 
-A text becomes a goal step by step, each of which asks back what it does not understand:
+A text becomes a goal in four steps, each of which asks back what it does not understand:
 
-1. words: ``tokens`` (signs, short spelling, slips), ``merged`` (several words that stand for
-   others, listed in ``wordings``; ``places``, ``orders``), ``courtesy`` (what says nothing);
-2. clauses: ``sentences``, with ``corrections``, ``exceptions``, ``relative``, ``sides``,
-   ``towers`` and ``run_on``, each of which rewrites words into plainer ones;
-3. relations: ``clauses`` reads one clause (``plainer``, ``described``, ``holdings``, ``phrases``,
-   ``quantities``, ``unrelated``) as ``said.Said``; ``parse`` puts them together with what was
-   ``told`` before, as ``parsed.ParsedRelation``;
-4. the scene: ``resolve`` finds what ``names`` and ``resolve_places`` mean, as ``goal.Goal``;
-   ``contradictions`` finds what excludes itself.
-
-All vocabulary is in ``language`` and ``wordings``.
+1. ``grammar.tokens`` and ``grammar.lattice`` find what kinds of word there are
+   (``lexicon_of_*.txt``), with slips mended (``slips``);
+2. ``grammar.chart`` reads them in all ways that ``rules_of_*.txt`` allow, the cheapest first; the
+   modules that these name build what they mean;
+3. ``grammar.discourse`` finds who "it" and "the rest" are: relations, as ``parsed.Parsed``;
+4. ``resolve`` finds what they mean in a scene, by ``names`` and by how the blocks stand ``now``, as
+   ``goal.Goal``; ``contradictions`` finds what excludes itself.
 """
 
 from .contradictions import check_contradictions, find_contradiction
 from .goal import Count, Goal, ResolveGoal, complete_goal, goal_of_picture
+from .grammar.reader import parse_goal
 from .names import resolve_name
-from .parse import parse_goal
-from .parsed import ParsedRelation
+from .parsed import Parsed, ParsedRelation
 from .resolve import resolve_goal
 from .terms import Kind, Words
 
@@ -28,6 +24,7 @@ __all__ = [
     "Count",
     "Goal",
     "Kind",
+    "Parsed",
     "ParsedRelation",
     "ResolveGoal",
     "Words",

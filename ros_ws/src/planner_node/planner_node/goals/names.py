@@ -14,29 +14,11 @@ from scene_graph import (
 )
 
 from ..errors import AmbiguousObjectError, UnknownObjectError
-from .language import (
-    CLEAR,
-    MODALS,
-    MUTE,
-    NOUNS,
-    NUMBERS,
-    OTHER_WORDS,
-    POLITE,
-    SYNONYMS,
-    TAKES,
-    meant,
-)
+from .example import EXAMPLE
+from .language import NOUNS, SYNONYMS
 from .resolve_places import is_place_word, place_named, unknown_place
-from .said import EXAMPLE
+from .slips import mended
 from .terms import Words
-
-#: Left out of a name where they were typed wrong.
-_LEFT_OUT: Final = frozenset(MUTE) | {"the"}
-#: No typos of what is in the scene.
-_RIGHT: Final = (
-    frozenset(COLORS) | frozenset(SHAPES) | NOUNS | OTHER_WORDS | CLEAR | TAKES | MUTE
-    | frozenset(NUMBERS)
-)  # fmt: skip
 
 #: A name of nothing but these is that of a block, if not of one in the scene.
 _LOOKS: Final = frozenset(COLORS) | frozenset(SHAPES) | NOUNS
@@ -60,20 +42,26 @@ def resolve_name(words: Words, names: Sequence[str], stack_count: int | None = N
     return candidates[0]
 
 
-def fitting_names(words: Words, names: Sequence[str], stack_count: int | None) -> list[str]:
-    """All that a name fits; raises UnknownObjectError where that is nothing."""
+def fitting_names(
+    words: Words, names: Sequence[str], stack_count: int | None, every: bool = False
+) -> list[str]:
+    """All that a name fits; raises UnknownObjectError where that is nothing.
+
+    Args:
+        every: "red box" is red_box_2 as well, not only the one of just that name.
+    """
     place = place_named(words, stack_count)
     if place is not None:
         return [place]
     by_full_name = {name.lower(): name for name in names}
     known = {part for name in by_full_name for part in name.split("_")}
     parts = [part for part in re.split(r"[ _-]+", words.text) if part]
-    for mended in (parts, _mended(parts, known)):
-        if "_".join(mended) in by_full_name:
-            return [by_full_name["_".join(mended)]]
-        wanted = {part if part in known else SYNONYMS.get(part, part) for part in mended} - NOUNS
+    for right in (parts, _mended(parts, known)):
+        if "_".join(right) in by_full_name and not (every and "_" not in words.text):
+            return [by_full_name["_".join(right)]]
+        wanted = {part if part in known else SYNONYMS.get(part, part) for part in right} - NOUNS
         candidates = sorted(name for name in names if wanted <= set(name.lower().split("_")))
-        if candidates and mended:
+        if candidates and right:
             return candidates
     if is_place_word(words.text):
         raise unknown_place(words, stack_count)
@@ -81,55 +69,10 @@ def fitting_names(words: Words, names: Sequence[str], stack_count: int | None) -
 
 
 def _mended(parts: Sequence[str], known: set[str]) -> list[str]:
-    """The words of a name without typos, and without those around it that mean nothing.
-
-    In front there may be a verb, behind a "should" or "please", typed wrong; in between nothing is
-    left out.
-    """
-    right = [
-        meant(part, known | NOUNS | SYNONYMS.keys(), _RIGHT) or _shortened(part, known)
-        for part in parts
-    ]
-    first, last = 0, len(parts)
-    while first < last and right[first] is None and _means_nothing(parts[first], _LEFT_OUT):
-        first += 1
-    while (
-        first < last
-        and right[last - 1] is None
-        and _means_nothing(parts[last - 1], MODALS | POLITE)
-    ):
-        last -= 1
-    kept = [word or part for word, part in zip(right[first:last], parts[first:last])]
-    return [one for part in kept for one in _apart(part, known)]
-
-
-def _means_nothing(part: str, known: frozenset[str]) -> bool:
-    """Whether it is one of these with a typo; the shorter a word, the more it is like others."""
-    return part in known or (len(part) > 4 and meant(part, known, _RIGHT) is not None)
-
-
-def _shortened(part: str, known: set[str]) -> str | None:
-    """The one word of which letters were left out: "yel" or "ylw" for "yellow"."""
-    if len(part) < 2 or part in _RIGHT:
-        return None
-    found = [word for word in known if word[0] == part[0] and _in_order(part, word)]
-    if len(part) == 2:
-        found = [word for word in found if len(word) == 3]  # "rd", "bx"
-    return found[0] if len(found) == 1 else None
-
-
-def _in_order(letters: str, word: str) -> bool:
-    """Whether a word has these letters in this order."""
-    rest = iter(word)
-    return all(letter in rest for letter in letters)
-
-
-def _apart(part: str, known: set[str]) -> list[str]:
-    """ "redbox" as two words."""
-    for word in known:
-        if part not in known and part.startswith(word) and part.removeprefix(word) in known | NOUNS:
-            return [word, part.removeprefix(word)]
-    return [part]
+    """The words of a name without slips."""
+    right = frozenset(known | NOUNS | SYNONYMS.keys())
+    meant = [(part,) if part in right else mended(part, right) for part in parts]
+    return [one[0] if len(one) == 1 else part for one, part in zip(meant, parts)]
 
 
 def _unknown_object(

@@ -6,7 +6,7 @@ from __future__ import annotations
 from scene_graph import PREDICATES, Phrase
 
 from ..errors import InvalidGoalError
-from .said import EXAMPLE
+from .example import EXAMPLE
 from .terms import Term
 
 

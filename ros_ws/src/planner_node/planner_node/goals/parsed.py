@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import permutations
 
 from scene_graph import ABOVE, LEFT, PREDICATES, UP, Phrase
@@ -26,16 +26,49 @@ class ParsedRelation:
     negated: bool = False
 
 
-def counted(subjects: Sequence[Term]) -> list[Term] | None:
-    """ "two of red, blue and green" as one number of these; None: it is not clear who they are."""
-    if not any(term.listed for term in subjects):
-        return list(subjects)
-    if any(term.listed or term.kind is not Kind.THE for term in subjects[1:]):
-        return None
-    if len(subjects) < 2 or subjects[0].least > len(subjects):
-        return None
-    among = tuple(term.words for term in subjects)
-    return [replace(subjects[0], listed=False, among=among)]
+@dataclass(frozen=True)
+class Changed:
+    """A change of how the blocks stand now.
+
+    Attributes:
+        kind: ``swap``, ``keep``, ``turn`` (upside down), ``same`` (all stays), ``shift``.
+        terms: of whom; empty for everything.
+        steps: of a shift, to the right.
+    """
+
+    kind: str
+    words: Words
+    terms: tuple[Term, ...] = ()
+    steps: int = 0
+
+
+Said = ParsedRelation | Changed
+
+
+@dataclass(frozen=True)
+class Parsed:
+    """What a text says.
+
+    Attributes:
+        readings: the ways to read it that are as good as one another; mostly it is one.
+    """
+
+    readings: tuple[tuple[Said, ...], ...]
+
+    @property
+    def block_names(self) -> tuple[Words, ...]:
+        """The blocks that the first reading names one by one."""
+        found: list[Words] = []
+        for item in self.readings[0]:
+            terms = item.terms if isinstance(item, Changed) else (item.subject, item.object)
+            for term in terms:
+                others = term.described.others if term.described is not None else ()
+                found += [
+                    one.words
+                    for one in (*others, *(() if term.described else (term,)))
+                    if one.kind is Kind.THE and not one.is_place
+                ]
+        return tuple(found)
 
 
 def in_one_place(blocks: Sequence[Term], same: bool, denied: bool) -> list[ParsedRelation] | None:

@@ -6,7 +6,9 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from scene_graph import (
     ABOVE,
@@ -16,56 +18,107 @@ from scene_graph import (
     Phrase,
     Relation,
     Rows,
+    Stacks,
     base_name,
 )
 
-from ..errors import AmbiguousObjectError, InvalidGoalError, UnknownObjectError
+from ..errors import AmbiguousObjectError, InvalidGoalError, PlannerError, UnknownObjectError
 from .goal import Count, Goal
-from .language import (
-    NOUNS,
-)
+from .language import NOUNS
 from .names import fitting_names, resolve_name
-from .parsed import ParsedRelation
+from .now import Now, needs_state
+from .parsed import Changed, Parsed, ParsedRelation, Said
 from .resolve_places import check_sides, unknown_place
-from .terms import Kind, Term
+from .terms import Kind, Term, Words
+
+
+@dataclass(frozen=True)
+class _Scene:
+    """What there is: blocks, places, and how they stand, as far as that is known."""
+
+    names: Sequence[str]
+    stack_count: int | None
+    rows: Rows
+    now: Stacks | None
+
+    def known(self, words: Words) -> Now:
+        """How the blocks stand; raises InvalidGoalError where that is not known."""
+        if self.now is None or self.rows.count > 1:
+            raise needs_state(words)
+        return Now(self.now, self.rows, lambda term: _resolve_term(term, self))
 
 
 def resolve_goal(
-    parsed: Sequence[ParsedRelation],
+    parsed: Parsed | Sequence[Said],
     names: Sequence[str],
     stack_count: int | None = None,
     rows: Rows = ONE_ROW,
+    now: Stacks | None = None,
 ) -> Goal:
     """Finds the objects that the names of a parsed goal mean; repeated relations count once.
 
     Args:
         stack_count: how many places the scene has; None where any may exist.
         rows: how they lie.
+        now: how the blocks stand; None: a goal that depends on it is refused.
 
     Raises:
         UnknownObjectError: if a name fits no object and no place of the scene.
         AmbiguousObjectError: if a name fits several.
-        InvalidGoalError: if numbers of blocks are related in a way that is not understood.
+        InvalidGoalError: if numbers of blocks are related in a way that is not understood, or the
+            text may be read in several ways that mean different goals.
     """
+    scene = _Scene(names, stack_count, rows, now)
+    readings = parsed.readings if isinstance(parsed, Parsed) else (tuple(parsed),)
+    goals: dict[tuple[frozenset[Relation], frozenset[Count]], Goal] = {}
+    error: PlannerError | None = None
+    for reading in readings:
+        try:
+            goal = _resolve(reading, scene)
+        except (UnknownObjectError, AmbiguousObjectError, InvalidGoalError) as caught:
+            error = error or caught
+            continue
+        goals.setdefault((frozenset(goal.relations), frozenset(goal.counts)), goal)
+    if len(goals) > 1:
+        told = "; or: ".join(map(str, goals.values()))
+        raise InvalidGoalError(f"it may mean: {told}; write it so that only one is meant")
+    if not goals:
+        assert error is not None
+        raise error
+    return next(iter(goals.values()))
+
+
+def _resolve(said: Sequence[Said], scene: _Scene) -> Goal:
     relations: dict[Relation, None] = {}
     counts: dict[Count, None] = {}
-    for item in parsed:
-        check_sides((item.subject, item.object), rows)
-        subjects = _resolve_term(item.subject, names, stack_count)
-        objects = _resolve_term(item.object, names, stack_count)
+    for item in said:
+        if isinstance(item, Changed):
+            continue
+        check_sides((item.subject, item.object), scene.rows)
+        subjects = _resolve_term(item.subject, scene)
+        objects = _resolve_term(item.object, scene)
         for meaning in _meanings(item, subjects, objects):
             if isinstance(meaning, Count):
                 counts[meaning] = None
             else:
                 relations[meaning] = None
-    return Goal(tuple(relations), tuple(counts), rows)
+    moved = frozenset(relation.subject for relation in relations)
+    for item in said:
+        if isinstance(item, Changed):
+            now = scene.known(item.words)
+            relations |= dict.fromkeys(now.changed(item, moved))
+    return Goal(tuple(relations), tuple(counts), scene.rows)
 
 
-def _resolve_term(term: Term, names: Sequence[str], stack_count: int | None) -> tuple[str, ...]:
+def _resolve_term(term: Term, scene: _Scene) -> tuple[str, ...]:
     """The one that is meant, or all that fit where it says how many of them."""
+    names, stack_count = scene.names, scene.stack_count
+    if term.described is not None:
+        all_fitting = functools.partial(fitting_names, term.words, names, stack_count, every=True)
+        return scene.known(term.words).described(term, all_fitting)
     if term.kind is Kind.THE:
         return (resolve_name(term.words, names, stack_count),)
-    left_out = {name for one in term.but for name in _left_out(one, term, names, stack_count)}
+    left_out = {name for one in term.but for name in _left_out(one, term, scene)}
     if term.is_every_place:
         if stack_count is None:
             raise unknown_place(term.words, None)
@@ -73,9 +126,8 @@ def _resolve_term(term: Term, names: Sequence[str], stack_count: int | None) -> 
         return tuple(name for name in every if name not in left_out)
     if term.among:
         return tuple(resolve_name(words, names, stack_count) for words in term.among)
-    found = tuple(
-        name for name in fitting_names(term.words, names, stack_count) if name not in left_out
-    )
+    fitting = fitting_names(term.words, names, stack_count, every=True)
+    found = tuple(name for name in fitting if name not in left_out)
     if term.exact is not None and len(found) != term.exact:
         raise AmbiguousObjectError(
             term.words.text,
@@ -86,17 +138,15 @@ def _resolve_term(term: Term, names: Sequence[str], stack_count: int | None) -> 
     return found
 
 
-def _left_out(
-    term: Term, every: Term, names: Sequence[str], stack_count: int | None
-) -> tuple[str, ...]:
+def _left_out(term: Term, every: Term, scene: _Scene) -> tuple[str, ...]:
     """Those that "every box except the red one" leaves out: they are boxes too, if any fit."""
-    if not every.is_place:
+    if not every.is_place and term.described is None:
         try:
-            group = fitting_names(every.words, names, stack_count)
-            return _resolve_term(term, group, stack_count)
+            group = fitting_names(every.words, scene.names, scene.stack_count, every=True)
+            return _resolve_term(term, replace(scene, names=group))
         except UnknownObjectError:
             pass
-    return _resolve_term(term, names, stack_count)
+    return _resolve_term(term, scene)
 
 
 def _meanings(

@@ -5,15 +5,16 @@ from __future__ import annotations
 
 import enum
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from scene_graph import base_name
+from scene_graph import Phrase, base_name
 
-from .language import BOTH, NUMBERS, PLACE_NOUNS, SIDES, meant
+from .language import NUMBERS, PLACE_NOUNS, SIDES
+from .slips import mended
 
 _BASE: Final = re.compile(r"([a-z]+)[ _]?(?:number |no |nr )?(\d+)")
+_STACK: Final = frozenset({"stack"})
 _FROM_RIGHT: Final = re.compile(r"stack (\d+) from right")
 
 
@@ -34,7 +35,7 @@ class Words:
     def base(self) -> str | None:
         """The name of the base that is meant, or None where it is a block or another place."""
         match = _BASE.fullmatch(_with_digits(self.text))
-        if match is None or not (match[1] in PLACE_NOUNS or meant(match[1], {"stack"})):
+        if match is None or not (match[1] in PLACE_NOUNS or mended(match[1], _STACK)):
             return None
         return base_name(int(match[2]))
 
@@ -48,7 +49,7 @@ class Words:
     def side(self) -> str | None:
         """left, middle or right, where it is the place at that side of the row."""
         side, _, noun = self.text.partition(" ")
-        return SIDES.get(side) if noun in PLACE_NOUNS else None
+        return side if side in SIDES and noun in PLACE_NOUNS else None
 
     @property
     def is_place(self) -> bool:
@@ -66,6 +67,23 @@ class Kind(enum.Enum):
 
 
 @dataclass(frozen=True)
+class Described:
+    """What is true now of the one that is meant.
+
+    Attributes:
+        how: ``related`` (by a phrase to the others), ``top`` or ``bottom`` (of the one other, or of
+            the only tower); of a place: ``tallest``, ``shortest``, ``empty``, ``other``, ``with``
+            (the others in it).
+        place: it is a place.
+    """
+
+    how: str
+    place: bool = False
+    phrase: Phrase | None = None
+    others: tuple[Term, ...] = ()
+
+
+@dataclass(frozen=True)
 class Term:
     """A name and which of the objects that fit it are meant.
 
@@ -74,10 +92,10 @@ class Term:
         but: of EVERY, those that are left out.
         others: of EVERY and NO, those that were named are left out.
         only: of THE, nothing else is there.
-        listed: of COUNT, the names that follow are the ones that are counted.
         among: of COUNT, those that are counted; none: all that fit.
         exact: of EVERY, how many there have to be; None: it is not said.
         bare: it is a number or "all" without a name: "two boxes in stack0, one in stack1".
+        described: it is known by how the blocks stand now.
     """
 
     words: Words
@@ -87,14 +105,16 @@ class Term:
     but: tuple[Term, ...] = ()
     others: bool = False
     only: bool = False
-    listed: bool = False
     among: tuple[Words, ...] = ()
     exact: int | None = None
     bare: bool = False
+    described: Described | None = None
 
     @property
     def is_place(self) -> bool:
         """Whether it is a place, or every one."""
+        if self.described is not None:
+            return self.described.place
         return self.words.is_place or self.is_every_place
 
     @property
@@ -103,24 +123,9 @@ class Term:
         return self.kind is Kind.EVERY and self.words.text in PLACE_NOUNS
 
     @property
-    def stands_for_several(self) -> bool:
-        """Whether it is "both", or "all" of those that were named."""
-        return self.words.text in BOTH or (self.bare and self.kind is Kind.EVERY)
-
-    @property
     def several(self) -> bool:
         """Whether more than one object is asked for."""
         return self.kind is Kind.EVERY or (self.kind is Kind.COUNT and self.least > 1)
-
-
-def number_of(text: str) -> int | None:
-    """The number that a word is, in digits or in letters."""
-    return int(text) if text.isdigit() else NUMBERS.get(text)
-
-
-def names_place(words: Sequence[Words]) -> bool:
-    """Whether some words together name one place."""
-    return bool(words) and Words(" ".join(item.text for item in words), 0).is_place
 
 
 def is_any_place(term: Term) -> bool:

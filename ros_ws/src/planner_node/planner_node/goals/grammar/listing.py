@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What several names mean: "red and blue", "stacks 0 and 1", "neither"."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..terms import Kind, Term, Words
+from .lattice import Word
+from .meaning import Names
+from .nominal import term_of, words_of
+
+
+def _one(t: Term) -> Names:
+    return Names((t,))
+
+
+def _unjoined(t: Term, u: Term) -> Names | None:
+    """ "red blue", but not where one of them may be another word with a slip."""
+    return _joined((t, u)) if not any(map(_slipped, (t.words, u.words))) else None
+
+
+def _slipped(words: Words) -> bool:
+    return words.stop - words.offset != len(words.text)
+
+
+def _pair(t: Term, u: Term) -> Names | None:
+    return _joined((t, u))
+
+
+def _either(t: Term, u: Term) -> Names:
+    return Names((t, u), either=True)
+
+
+def _series(t: Term, r: Names) -> Names | None:
+    joined = _joined((t, *r.terms))
+    return joined and replace(joined, either=r.either)
+
+
+def _last_two(t: Term, u: Term, o: Word | None = None) -> Names | None:
+    joined = _joined((t, u))
+    return joined and replace(joined, either=o is not None)
+
+
+def _neither(t: Term, u: Term, v: Term | None = None) -> Names | None:
+    terms = (t, u) if v is None else (t, u, v)
+    return Names(terms, denied=True) if all(one.kind is Kind.THE for one in terms) else None
+
+
+def _colors_of(
+    a: Word, b: Word, h: tuple[Word, bool], c: Word | None = None
+) -> Names | None:  # fmt: skip
+    """ "the red and blue boxes"."""
+    colors = (a, b) if c is None else (a, b, c)
+    return Names(tuple(term_of(words_of(one, h[0])) for one in colors)) if h[1] else None
+
+
+def _places(n: Word, i: Word, j: Word, o: Word | None = None) -> Names | None:
+    if n.means == n.text and not j.text.isdigit():
+        return None  # "two in stack 0 and one in stack 1"
+    places = tuple(term_of(words_of(n, k, text=f"stack {k.means}")) for k in (i, j))
+    return Names(places, either=o is not None)
+
+
+def _range(p: Term | Word, q: Term | Word) -> Names | None:
+    ends = [one.means if isinstance(one, Word) else (one.words.base or "")[5:] for one in (p, q)]
+    if not all(end.isdigit() for end in ends) or int(ends[0]) >= int(ends[1]):
+        return None
+    words = p.words if isinstance(p, Term) else words_of(p)
+    numbers = range(int(ends[0]), int(ends[1]) + 1)
+    return Names(tuple(term_of(replace(words, text=f"stack {number}")) for number in numbers))
+
+
+def _sides(i: Word, j: Word) -> Names:
+    return Names(tuple(term_of(words_of(k, text=f"{k.means} stack")) for k in (i, j)))
+
+
+def _outer() -> Names:
+    return Names(tuple(Term(Words(f"{side} stack", 0, 0)) for side in ("left", "right")))
+
+
+def _apposed(who: Names) -> Names | None:
+    """ "the blocks red and green"."""
+    return who if all(one.kind is Kind.THE and not one.is_place for one in who.terms) else None
+
+
+def _correction(w: Word) -> str:
+    return w.text
+
+
+def _joined(terms: tuple[Term, ...]) -> Names | None:
+    if any(term.bare and term.kind is Kind.EVERY for term in terms[1:]):
+        return None
+    if any(term.but or term.among for term in terms[:-1]):
+        return None  # "all but red and blue"
+    if any(term.kind is Kind.NO and not term.others for term in terms):
+        return None
+    if any(term.kind is Kind.NO for term in terms[:-1]):
+        return None
+    return Names(terms)

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rules for whole texts: wishes around clauses, several of them, corrections, what says nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..terms import Kind, Term
+from .lattice import Word
+from .lexicon import BAD
+from .meaning import Again, Change, Item, Mention, Names, Relate, Row, Take
+from .nominal import UPON, words_of
+from .verbal import Verb, relate
+
+#: Ends of words that tell how something is, or was.
+_TELLING = ("ed", "en", "ly", "less", "ing", "ful")
+
+# Who wishes
+
+
+# What stands in front of a wish
+
+
+def _under(c: Item, f: bool = False) -> Item | None:
+    """A wish, or what is not wished."""
+    item = c
+    if not f:
+        return item
+    if not isinstance(item, Relate) or item.denied or item.subject is None:
+        return None
+    subject = item.subject
+    if subject.denied or any(term.only or term.kind is Kind.NO for term in subject.terms):
+        return None
+    return relate(subject, item.links, Verb(denied=True))
+
+
+# What says nothing
+
+
+def _again(n: Names) -> Again | None:
+    return None if n.either or n.denied else Again(n)
+
+
+def _again_denied(n: Names) -> Again | None:
+    return None if n.either or n.denied else Again(n, denied=True)
+
+
+# Changes of what is there now
+
+
+def _swap(w: Word, n: Names | None = None, m: object = None, o: object = None) -> Change | None:
+    names = n or Names((m, o))  # type: ignore[arg-type]
+    if names.either or names.denied:
+        return None
+    return Change("swap", words_of(w), names)
+
+
+def _keep(n: Names, w: Word | None = None) -> Change | None:
+    if n.either or n.denied or any(term.others for term in n.terms):
+        return None
+    return Change("keep", n.terms[0].words if w is None else words_of(w), n)
+
+
+def _turn(n: Names, w: Word) -> Change | None:
+    if n.either or n.denied or len(n.terms) > 1:
+        return None
+    return Change("turn", words_of(w), n)
+
+
+def _turn_tower(w: Word) -> Change:
+    return Change("turn", words_of(w))
+
+
+def _same(w: Word) -> Change:
+    return Change("same", words_of(w))
+
+
+def _shift(n: Names, k: int, w: Word) -> Change | None:
+    if n.either or n.denied:
+        return None
+    return Change("shift", words_of(w), n, k if w.text == "right" else -k)
+
+
+def _steps(k: Word | None = None, w: Word | None = None) -> int | None:
+    if w is not None and w.text not in ("a", "one"):
+        return None
+    return int(k.means) if k else 1
+
+
+def _to_side_word(w: Word) -> Word | None:
+    return w if w.text in ("left", "right") else None
+
+
+# Several of them
+
+
+def _mention(b: Term) -> tuple[Item, ...]:
+    return (Mention(b),)
+
+
+#: An item, and how it is joined to what stands in front of it.
+Joined = tuple[str, tuple[Item, ...]]
+
+
+def _last(i: tuple[Item, ...]) -> tuple[Joined, ...]:
+    return (("", i),)
+
+
+def _aside_word(w: Word) -> Word | None:
+    """What names something else, not what says that it is, or is not, so."""
+    return None if w.text in BAD or w.text.endswith(_TELLING) else w
+
+
+def _beside_aside(r: tuple[Joined, ...] = (), i: tuple[Item, ...] = ()) -> tuple[Joined, ...]:
+    return r or (("", i),)
+
+
+def _more(i: tuple[Item, ...], r: tuple[Joined, ...], s: str = "") -> tuple[Joined, ...] | None:
+    first = r[0][1][0] if r[0][1] else None
+    if i and isinstance(first, Relate) and first.subject is None:
+        taken = isinstance(i[0], Take) and i[0].off is not None
+        if not s or (first.bare and taken):
+            return None
+    return (("", i), (s or r[0][0], r[0][1]), *r[1:])
+
+
+def _replaced(i: tuple[Item, ...], c: str, r: tuple[Joined, ...]) -> tuple[Joined, ...] | None:
+    """What follows stands for what it was in front of: an "it" in it would not be clear."""
+    if not i or not isinstance(i[0], Relate):
+        return None
+    if any(link.phrase == UPON and link.names and len(link.names.terms) > 1 for link in i[0].links):
+        return None
+    first = r[0][1]
+    if len(first) != 1 or not isinstance(first[0], Relate | Row):
+        return None
+    if isinstance(first[0], Relate) and first[0].denied:
+        return None
+    if c in ("wait", "sorry") and not _overlap(i[0], first[0]):
+        return None  # is it another wish?
+    if isinstance(first[0], Relate) and first[0].subject is None:
+        return ((r[0][0], (replace(first[0], subject=i[0].subject),)), *r[1:])
+    return r
+
+
+def _overlap(one: Relate, other: Item) -> bool:
+    """Whether two are said of the same subject, or to the same object."""
+    if not isinstance(other, Relate):
+        return False
+    if other.subject is None or one.subject is None:
+        return True
+    subjects = [{term.words.text for term in each.subject.terms} for each in (one, other)]  # type: ignore[union-attr]
+    objects = [
+        {term.words.text for link in each.links if link.names for term in link.names.terms}
+        for each in (one, other)
+    ]
+    return bool(subjects[0] & subjects[1] or objects[0] & objects[1])
+
+
+def _rather_than(i: tuple[Item, ...]) -> tuple[Joined, ...] | None:
+    if not i or not isinstance(i[0], Relate):
+        return None
+    return (("", i),)
+
+
+def _or(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...]:
+    return (("", i), ("or", r[0][1]), *r[1:])
