@@ -63,6 +63,7 @@ class PathProblem:
         solver: SolverFactory,
         phases: int = 1,
         obstacles: Sequence[Obstacle] = (),
+        joint: bool = False,
     ) -> None:
         self._model, self._inverse, self._settings = model, inverse, settings
         self.obstacles = tuple(obstacles)
@@ -72,10 +73,15 @@ class PathProblem:
         velocities = np.eye(steps)[1:] - np.eye(steps)[:-1]
         own_steps = [constraint.path_steps(settings) for constraint in constraints]
         self._groups = grouped(own_steps, constraints, model, stacks)
+        switches = [k * intervals for k in range(1, phases)] if joint else []
+        acting = [constraint for constraint in constraints if constraint.at_switches]
+        self._at_switches = (
+            grouped([(0,)] * len(acting), acting, model, stacks, "switches") if switches else []
+        )
         self._problem = KOrderProblem(
             model.dimension,
             steps,
-            fixed=[k * intervals for k in range(phases + 1)],
+            fixed=[k * intervals for k in range(phases + 1) if k * intervals not in switches],
             costs=[
                 DifferenceCost(_accelerations(phases, intervals), weights),
                 DifferenceCost(velocities, np.full(model.dimension, 3.0 * intervals)),
@@ -83,7 +89,8 @@ class PathProblem:
             attached=[
                 Attached(group.rows, tuple(k * intervals + s for k in range(phases) for s in own))
                 for own, group in self._groups
-            ],
+            ]
+            + [Attached(group.rows, tuple(switches)) for _, group in self._at_switches],
             solver=solver,
         )
 

@@ -104,6 +104,7 @@ class KOrderProblem:
         self.free = np.array([step for step in range(steps) if step not in set(fixed)])
         self.fixed = np.array(sorted(set(fixed)), dtype=int)
         self.attached = tuple(attached)
+        self._costs = tuple(costs)
         full = np.zeros((steps * dimension, steps * dimension))
         for cost in costs:
             gram = cost.differences.T @ cost.differences
@@ -226,6 +227,12 @@ class KOrderProblem:
             violations=tuple(part.reshape(d.lower.shape) for part, d in zip(parts, demands)),
             solver=found.solver,
             iterations=found.iterations,
+        )
+
+    def cost(self, x: Array) -> float:
+        """Of configurations (steps, n), whether they keep to the constraints or not."""
+        return sum(
+            float((cost.weights * (cost.differences @ x) ** 2).sum()) for cost in self._costs
         )
 
     def _instance(
