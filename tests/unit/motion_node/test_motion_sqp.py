@@ -37,7 +37,7 @@ def linear_program() -> Program:
     function = ca.Function("nlp_jac_g", [z, p], [g, matrix], ["x", "p"], ["g", "jac_g_x"])
     library = machine_code(function)
     function = loaded(function, library)
-    return Program(z, p, cost, g, hessian, function, library, lambda: function)
+    return Program(z, p, cost, g, hessian, SIZE, function, library, lambda: function)
 
 
 @pytest.fixture(scope="module")

@@ -180,7 +180,7 @@ class KOrderProblem:
         jacobian = ca.Function(
             "nlp_jac_g", [z, p], [g, ca.vertcat(*jacobians)], ["x", "p"], ["g", "jac_g_x"]
         )
-        return Program(z, p, cost, g, self._hessian, jacobian, None, make_curvature)
+        return Program(z, p, cost, g, self._hessian, n, jacobian, None, make_curvature)
 
     def _take_machine_code(self) -> bool:
         """Goes over to machine code when there is some that was not there before."""
