@@ -116,7 +116,6 @@ def grouped(
     constraints: Sequence[Constraint],
     model: ArmModel,
     stacks: int,
-    name: str = "rows",
 ) -> list[tuple[tuple[float, ...], Group]]:
     """Constraints by the steps at which they act, those without steps left out.
 
@@ -128,6 +127,6 @@ def grouped(
         if own:
             members.setdefault(own, []).append(constraint)
     return [
-        (own, Group(f"{name}_{index}", group, model, stacks))
+        (own, Group(f"rows_{index}", group, model, stacks))
         for index, (own, group) in enumerate(members.items())
     ]
