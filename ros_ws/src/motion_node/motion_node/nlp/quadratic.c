@@ -2,7 +2,8 @@
  *
  * min over x   x' H x / 2 + g' x   s.t.   lower <= A x <= upper,  least <= x <= most
  *
- * for a constant, positive definite H of banded blocks, one a configuration, and sparse rows A.
+ * for a constant, positive definite H and sparse rows A. H consists of blocks, one for each pair of
+ * configurations, which are diagonal, as costs are sums over joints, and zero but near its diagonal.
  * Equations of one configuration are eliminated: it moves in what they leave to it, x = p + Z y, and
  * Z' H Z, banded like H, is factorised anew for each program. All other rows are left to the dual
  * active-set method of Goldfarb and Idnani (1983) in the space of the active rows: besides, all that
@@ -23,7 +24,7 @@
 
 typedef struct {
     int variables, rows, block;        /* variables a block */
-    const double *hessian;             /* by rows */
+    const double *hessian;             /* the diagonals of its blocks, by rows of blocks */
     const int *first;                  /* of each block, the first one that it is coupled with */
     const int *begin, *column, *place; /* of each row's entries, and where a Jacobian has them */
 } Shape;
@@ -41,7 +42,6 @@ typedef struct {
     int *row, *where; /* which they are; of each row, -1 or where it is among them */
     double *sign;     /* 1 at its lower bound, -1 at its upper one */
     double *multiplier;
-    double *pushed; /* P n of each of them, by rows */
     double *factor; /* lower triangular, by rows of `variables` entries */
     double *part, *share, *direction, *across;
     Freedom freedom;
@@ -66,6 +66,24 @@ static double row_times(const Shape *shape, const double *jacobian, int row, con
     for (int e = shape->begin[row]; e < shape->begin[row + 1]; ++e)
         sum += jacobian[shape->place[e]] * x[shape->column[e]];
     return sum;
+}
+
+/* Of the block of H for two configurations. */
+static const double *diagonal(const Shape *shape, int b, int c) {
+    const int blocks = shape->variables / shape->block;
+    return shape->hessian + ((size_t)b * blocks + c) * shape->block;
+}
+
+/* out += H x */
+static void times(const Shape *shape, const double *x, double *out) {
+    const int size = shape->block;
+    for (int b = 0; b < shape->variables / size; ++b)
+        for (int c = shape->first[b]; c <= b; ++c) {
+            const double *cost = diagonal(shape, b, c);
+            for (int k = 0; k < size; ++k) out[b * size + k] += cost[k] * x[c * size + k];
+            if (c == b) continue;
+            for (int k = 0; k < size; ++k) out[c * size + k] += cost[k] * x[b * size + k];
+        }
 }
 
 /* The block that all of a row's entries are in; -1: there is none. */
@@ -114,45 +132,47 @@ static void solve(const Shape *shape, const Freedom *freedom, int from, double *
     }
 }
 
-/* out = Z y */
-static void spanned(const Shape *shape, const Freedom *freedom, const double *y, double *out) {
+/* x += Z y */
+static void spanned(const Shape *shape, const Freedom *freedom, double *x) {
     const int size = shape->block;
-    memset(out, 0, shape->variables * sizeof(double));
+    const double *y = freedom->y;
     for (int b = 0; b < shape->variables / size; ++b)
         for (int k = 0; k < freedom->size[b]; ++k)
-            add(size, out + b * size, y[freedom->start[b] + k],
+            add(size, x + b * size, y[freedom->start[b] + k],
                 freedom->basis + (size_t)(b * size + k) * size);
 }
 
-/* P n, of the row with a sign. */
-static void push(const Shape *shape, const double *jacobian, const Freedom *freedom, int row,
-                 double sign, double *out) {
-    const int n = shape->variables, size = shape->block;
-    double *y = freedom->y;
-    int from = n;
-    memset(y, 0, n * sizeof(double));
-    const int one = row - shape->rows;
+/* y += factor Z' n; returns the first free direction with a share in n. */
+static int gather(const Shape *shape, const double *jacobian, const Freedom *freedom, int row,
+                  double factor, double *y) {
+    const int size = shape->block, one = row - shape->rows;
     const int begin = one < 0 ? shape->begin[row] : 0;
     const int end = one < 0 ? shape->begin[row + 1] : 1;
+    int from = shape->variables;
     for (int e = begin; e < end; ++e) {
         const int column = one < 0 ? shape->column[e] : one, b = column / size;
-        const double value = one < 0 ? sign * jacobian[shape->place[e]] : sign;
+        const double value = one < 0 ? factor * jacobian[shape->place[e]] : factor;
         const double *basis = freedom->basis + (size_t)b * size * size + column % size;
-        for (int k = 0; k < freedom->size[b]; ++k) y[freedom->start[b] + k] += value * basis[k * size];
+        double *own = y + freedom->start[b];
+        for (int k = 0; k < freedom->size[b]; ++k) own[k] += value * basis[k * size];
         if (freedom->start[b] < from) from = freedom->start[b];
     }
-    solve(shape, freedom, from, y);
-    spanned(shape, freedom, y, out);
+    return from;
+}
+
+/* The entry of H on its diagonal. */
+static double own_cost(const Shape *shape, int variable) {
+    const int b = variable / shape->block;
+    return diagonal(shape, b, b)[variable % shape->block];
 }
 
 /* Of a row, n' D^-1 n for the diagonal D of H: what it is measured by. */
 static double weight(const Shape *shape, const double *jacobian, int row) {
-    const size_t next = shape->variables + 1;
-    if (row >= shape->rows) return 1.0 / shape->hessian[(row - shape->rows) * next];
+    if (row >= shape->rows) return 1.0 / own_cost(shape, row - shape->rows);
     double sum = 0.0;
     for (int e = shape->begin[row]; e < shape->begin[row + 1]; ++e) {
         const double value = jacobian[shape->place[e]];
-        sum += value * value / shape->hessian[shape->column[e] * next];
+        sum += value * value / own_cost(shape, shape->column[e]);
     }
     return sum;
 }
@@ -164,8 +184,6 @@ static void leave(const Shape *shape, Active *active, int index) {
     for (int i = index; i < last; ++i) {
         double *row = active->factor + (size_t)i * n;
         memcpy(row, row + n, (i + 2) * sizeof(double));
-        memcpy(active->pushed + (size_t)i * n, active->pushed + (size_t)(i + 1) * n,
-               n * sizeof(double));
         active->row[i] = active->row[i + 1];
         active->where[active->row[i]] = i;
         active->sign[i] = active->sign[i + 1];
@@ -192,7 +210,11 @@ static void leave(const Shape *shape, Active *active, int index) {
 static double look(const Shape *shape, Active *active, const double *jacobian, int row,
                    double sign) {
     double *part = active->part;
-    push(shape, jacobian, &active->freedom, row, sign, active->across);
+    const Freedom *freedom = &active->freedom;
+    memset(freedom->y, 0, shape->variables * sizeof(double));
+    solve(shape, freedom, gather(shape, jacobian, freedom, row, sign, freedom->y), freedom->y);
+    memset(active->across, 0, shape->variables * sizeof(double));
+    spanned(shape, freedom, active->across);
     for (int i = 0; i < active->count; ++i) {
         const double *factor = active->factor + (size_t)i * shape->variables;
         const double own =
@@ -214,14 +236,25 @@ static void back(const Shape *shape, const Active *active, double *share) {
     }
 }
 
+/* x += P N share, of the active rows N. */
+static void along(const Shape *shape, const double *jacobian, Active *active,
+                  const double *share, double factor, double *x) {
+    const Freedom *freedom = &active->freedom;
+    if (active->count == 0) return;
+    memset(freedom->y, 0, shape->variables * sizeof(double));
+    for (int i = 0; i < active->count; ++i)
+        gather(shape, jacobian, freedom, active->row[i], factor * share[i] * active->sign[i],
+               freedom->y);
+    solve(shape, freedom, 0, freedom->y);
+    spanned(shape, freedom, x);
+}
+
 /* Of the row that was looked at last, what a unit costs each active one, and its direction. */
-static void spread(const Shape *shape, Active *active) {
-    const int n = shape->variables;
+static void spread(const Shape *shape, const double *jacobian, Active *active) {
     memcpy(active->share, active->part, active->count * sizeof(double));
     back(shape, active, active->share);
-    memcpy(active->direction, active->across, n * sizeof(double));
-    for (int i = 0; i < active->count; ++i)
-        add(n, active->direction, -active->share[i], active->pushed + (size_t)i * n);
+    memcpy(active->direction, active->across, shape->variables * sizeof(double));
+    along(shape, jacobian, active, active->share, -1.0, active->direction);
 }
 
 /* The row that was looked at last becomes active. */
@@ -231,7 +264,6 @@ static void join(const Shape *shape, Active *active, int row, double sign, doubl
     double *factor = active->factor + (size_t)count * n;
     memcpy(factor, active->part, count * sizeof(double));
     factor[count] = sqrt(left);
-    memcpy(active->pushed + (size_t)count * n, active->across, n * sizeof(double));
     active->row[count] = row;
     active->where[row] = count;
     active->sign[count] = sign;
@@ -273,7 +305,11 @@ static void eliminate(const Shape *shape, const double *jacobian, const double *
     for (int b = 0; b < blocks; ++b) {
         double *basis = freedom->basis + (size_t)b * size * size;
         const int taken = freedom->size[b];
-        for (int k = taken; k < size; ++k) {
+        if (taken == 0) {
+            memset(basis, 0, (size_t)size * size * sizeof(double));
+            for (int k = 0; k < size; ++k) basis[k * size + k] = 1.0;
+        }
+        for (int k = taken == 0 ? size : taken; k < size; ++k) {
             /* Of the axes the one that is farthest from what is there. */
             int best = 0;
             double most = -1.0;
@@ -291,7 +327,7 @@ static void eliminate(const Shape *shape, const double *jacobian, const double *
             const double left = beyond(size, k, basis, own);
             for (int i = 0; i < size; ++i) own[i] /= left;
         }
-        /* Freedom directions first. */
+        /* Free directions first. */
         memmove(basis, basis + taken * size, (size_t)(size - taken) * size * sizeof(double));
         freedom->size[b] = size - taken;
         freedom->start[b] = start;
@@ -299,17 +335,21 @@ static void eliminate(const Shape *shape, const double *jacobian, const double *
     }
     double *half = active->across;
     for (int b = 0; b < blocks; ++b)
-        for (int c = shape->first[b]; c <= b; ++c)
+        for (int c = shape->first[b]; c <= b; ++c) {
+            const double *cost = diagonal(shape, b, c);
+            const int whole = freedom->size[c] == size;
             for (int i = 0; i < freedom->size[b]; ++i) {
                 const double *own = freedom->basis + (size_t)(b * size + i) * size;
-                double *row = freedom->factor + (size_t)(freedom->start[b] + i) * n + freedom->start[c];
-                memset(half, 0, size * sizeof(double));
-                for (int k = 0; k < size; ++k)
-                    if (own[k] != 0.0)
-                        add(size, half, own[k], shape->hessian + (size_t)(b * size + k) * n + c * size);
-                for (int j = 0; j < (c < b ? freedom->size[c] : i + 1); ++j)
-                    row[j] = dot(size, half, freedom->basis + (size_t)(c * size + j) * size);
+                double *row = freedom->factor + (size_t)(freedom->start[b] + i) * n;
+                const int count = c < b ? freedom->size[c] : i + 1;
+                for (int k = 0; k < size; ++k) half[k] = own[k] * cost[k];
+                if (whole) memcpy(row + freedom->start[c], half, count * sizeof(double));
+                else
+                    for (int j = 0; j < count; ++j)
+                        row[freedom->start[c] + j] =
+                            dot(size, half, freedom->basis + (size_t)(c * size + j) * size);
             }
+        }
     for (int b = 0; b < blocks; ++b) {
         const int low = reach(shape, freedom, b);
         for (int i = freedom->start[b]; i < freedom->start[b] + freedom->size[b]; ++i) {
@@ -335,19 +375,13 @@ static int equations(const Shape *shape, const double *jacobian, const double *g
     double *share = active->share, *slope = active->direction;
     eliminate(shape, jacobian, lower, upper, active, x);
     memcpy(slope, gradient, n * sizeof(double));
-    for (int i = 0; i < n; ++i) {
-        const double *row = shape->hessian + (size_t)i * n;
-        const int begin = shape->first[i / size] * size;
-        slope[i] += dot(i + 1 - begin, row + begin, x + begin);
-        add(i - begin, slope + begin, x[i], row + begin);
-    }
+    times(shape, x, slope);
     for (int b = 0; b < n / size; ++b)
         for (int k = 0; k < freedom->size[b]; ++k)
             freedom->y[freedom->start[b] + k] =
                 -dot(size, freedom->basis + (size_t)(b * size + k) * size, slope + b * size);
     solve(shape, freedom, 0, freedom->y);
-    spanned(shape, freedom, freedom->y, active->across);
-    add(n, x, 1.0, active->across);
+    spanned(shape, freedom, x);
     for (int row = 0; row < all; ++row) {
         if (lower[row] < upper[row] || active->where[row] == -2) continue;
         const double left = look(shape, active, jacobian, row, 1.0);
@@ -358,13 +392,30 @@ static int equations(const Shape *shape, const double *jacobian, const double *g
         join(shape, active, row, 1.0, left, 0.0);
     }
     back(shape, active, share);
-    for (int i = 0; i < active->count; ++i)
-        add(n, x, share[i], active->pushed + (size_t)i * n);
+    along(shape, jacobian, active, share, 1.0, x);
     for (int row = 0; row < all; ++row) {
         if (lower[row] < upper[row] || active->where[row] >= 0) continue;
         if (fabs(lower[row] - row_times(shape, jacobian, row, x)) > CONTRADICTION) return 0;
     }
     return 1;
+}
+
+/* The row that is violated most; -1: none is. */
+static int violated(const Shape *shape, const double *jacobian, const double *lower,
+                    const double *upper, const Active *active, const double *x) {
+    const int all = shape->rows + shape->variables;
+    double most = NONE;
+    int worst = -1;
+    for (int row = 0; row < all; ++row) {
+        if (active->where[row] != -1 || !(lower[row] < upper[row])) continue;
+        if (isinf(lower[row]) && isinf(upper[row])) continue;
+        const double value = row_times(shape, jacobian, row, x);
+        const double missing = fmax(lower[row] - value, value - upper[row]);
+        if (missing <= most) continue;
+        most = missing;
+        worst = row;
+    }
+    return worst;
 }
 
 /* The minimum x of a gradient at 0. `lower` and `upper` are those of the rows, then of the
@@ -376,28 +427,17 @@ static int quadratic(const Shape *shape, const double *jacobian, const double *g
     for (int row = 0; row < all; ++row) active->where[row] = -1;
     if (!equations(shape, jacobian, gradient, lower, upper, active, x)) return 0;
     const int always = active->count;
-    for (int turn = 0; turn < 20 * all; ++turn) {
-        int worst = -1;
-        double sign = 1.0, missing = NONE;
-        for (int row = 0; row < all; ++row) {
-            if (active->where[row] >= 0 || !(lower[row] < upper[row])) continue;
-            const double value = row_times(shape, jacobian, row, x);
-            if (lower[row] - value > missing) {
-                missing = lower[row] - value;
-                worst = row;
-                sign = 1.0;
-            }
-            if (value - upper[row] > missing) {
-                missing = value - upper[row];
-                worst = row;
-                sign = -1.0;
-            }
-        }
-        if (worst < 0) return 1;
+    for (int turn = 0; turn < 20 * all;) {
+        const int row = violated(shape, jacobian, lower, upper, active, x);
+        if (row < 0) return 1;
+        const double value = row_times(shape, jacobian, row, x);
+        const double sign = lower[row] > value ? 1.0 : -1.0;
+        double missing = sign > 0.0 ? lower[row] - value : value - upper[row];
         double multiplier = 0.0;
         for (;;) {
-            const double left = look(shape, active, jacobian, worst, sign);
-            spread(shape, active);
+            if (++turn > 20 * all) return 0;
+            const double left = look(shape, active, jacobian, row, sign);
+            spread(shape, jacobian, active);
             double most = INFINITY;
             int leaving = -1;
             for (int i = always; i < active->count; ++i) {
@@ -418,11 +458,10 @@ static int quadratic(const Shape *shape, const double *jacobian, const double *g
                 missing -= step * left;
             }
             if (full <= most) {
-                join(shape, active, worst, sign, left, multiplier);
+                join(shape, active, row, sign, left, multiplier);
                 break;
             }
             leave(shape, active, leaving);
-            if (++turn >= 20 * all) return 0;
         }
     }
     return 0;

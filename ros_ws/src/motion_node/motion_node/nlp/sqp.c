@@ -42,7 +42,7 @@ int sqp(const Problem *problem, const double *p, const double *linear, const dou
     const Shape *shape = &problem->shape;
     const int n = shape->variables, rows = shape->rows, all = n + rows;
     const size_t square = (size_t)n * n;
-    const size_t reals = problem->reals + problem->entries + 3 * square + (9 + shape->block) * n
+    const size_t reals = problem->reals + problem->entries + 2 * square + (9 + shape->block) * n
         + 2 * all;
     double *room = malloc(reals * sizeof(double));
     int *indices = malloc((size_t)(3 * n + all) * sizeof(int));
@@ -60,8 +60,7 @@ int sqp(const Problem *problem, const double *p, const double *linear, const dou
     active.share = active.part + n;
     active.direction = active.share + n;
     active.across = active.direction + n;
-    active.pushed = active.across + n;
-    active.factor = active.pushed + square;
+    active.factor = active.across + n;
     active.freedom.start = active.where + all;
     active.freedom.size = active.freedom.start + n;
     active.freedom.factor = active.factor + square;
@@ -88,12 +87,7 @@ int sqp(const Problem *problem, const double *p, const double *linear, const dou
             high[rows + i] = fmin(upper[rows + i] - z[i], trust);
             gradient[i] = linear[i];
         }
-        for (int i = 0; i < n; ++i) {
-            const double *row = shape->hessian + (size_t)i * n;
-            const int begin = shape->first[i / shape->block] * shape->block;
-            gradient[i] += dot(i + 1 - begin, row + begin, z + begin);
-            add(i - begin, gradient + begin, z[i], row + begin);
-        }
+        times(shape, z, gradient);
         if (!quadratic(shape, jacobian, gradient, low, high, &active, x)) break;
         /* Without the constraints' curvature, steps can go to and fro; shorter ones settle. A step
          * that ends at a limit of half the one before has done its part: rounding must not decide

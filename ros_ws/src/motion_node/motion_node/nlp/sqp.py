@@ -56,10 +56,14 @@ class SqpInC:
     """See :class:`Sqp`. The lock of the interpreter is free meanwhile."""
 
     def __init__(self, program: Program, steps: ctypes.CDLL, constraints: ctypes.CDLL) -> None:
-        hessian, block = np.ascontiguousarray(program.hessian), program.block
+        block, size = program.block, len(program.hessian)
+        blocks = size // block
+        whole = program.hessian.reshape(blocks, block, blocks, block)
+        hessian = np.ascontiguousarray(np.einsum("bkck->bck", whole))
+        if np.count_nonzero(hessian) != np.count_nonzero(whole):
+            raise ValueError("the cost of a joint depends on another joint")
+        first = np.argmax((hessian != 0.0).any(axis=2), axis=1).astype(np.intc)
         self._rows = program.g.numel()
-        blocks = np.abs(hessian).reshape(len(hessian) // block, block, -1, block).sum(axis=(1, 3))
-        first = np.argmax(blocks > 0.0, axis=1).astype(np.intc)
         # The Jacobian's entries come by columns; rows are needed.
         slopes = program.jacobian.sparsity_out(1)
         rows, columns = (np.array(own, dtype=np.intc) for own in slopes.get_triplet())
@@ -70,7 +74,7 @@ class SqpInC:
         room = [ctypes.c_longlong() for _ in range(4)]
         getattr(constraints, f"{name}_work")(*map(ctypes.byref, room))
         self._problem = _Problem(
-            len(hessian),
+            size,
             self._rows,
             block,
             *(array.ctypes.data for array in self._kept[:5]),
