@@ -28,6 +28,9 @@ from .solver import SolverFactory, quickest
 
 Array = NDArray[np.float64]
 
+#: So small beside others, an entry of the Hessian comes from rounding: the Hessian is banded.
+ROUNDING = 1e-12
+
 
 @dataclass(frozen=True)
 class DifferenceCost:
@@ -109,6 +112,7 @@ class KOrderProblem:
         for cost in costs:
             gram = cost.differences.T @ cost.differences
             full += 2.0 * np.kron(gram, np.diag(cost.weights))
+        full[np.abs(full) < ROUNDING * np.abs(full).max()] = 0.0
         free, fixed_rows = self._unknowns(self.free), self._unknowns(self.fixed)
         self._hessian = full[np.ix_(free, free)]
         self._coupling = full[np.ix_(free, fixed_rows)]

@@ -114,6 +114,7 @@ static int reach(const Shape *shape, const Freedom *freedom, int block) {
 static void solve(const Shape *shape, const Freedom *freedom, int from, double *y) {
     const int n = shape->variables, blocks = n / shape->block;
     for (int b = 0; b < blocks; ++b) {
+        if (freedom->start[b] + freedom->size[b] <= from) continue;
         const int low = reach(shape, freedom, b);
         for (int i = freedom->start[b]; i < freedom->start[b] + freedom->size[b]; ++i) {
             if (i < from) continue;
