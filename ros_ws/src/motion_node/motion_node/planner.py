@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import cache
 from typing import Final
 
 import numpy as np
@@ -16,7 +15,8 @@ from numpy.typing import NDArray
 from scene_graph import Move, SceneGraph
 
 from .blocks import Scene, read_scene
-from .bounds import JointProblem, Keyframes, PathProblem, SwitchProblems, check_widths
+from .bounds import JointProblem, Keyframes, PathProblem, SwitchProblems, Undivided, check_widths
+from .bounds.costs import joined
 from .choosing import solve_choosing
 from .constraints import (
     Clearances,
@@ -113,35 +113,35 @@ class MotionPlanner:
         self.limits = JointLimits(self.model.kinematics.velocity, np.array(arm.acceleration))
         self.timing = self.settings.timing
         self._bounds: dict[int, tuple[Keyframes, PathProblem]] = {}
-        self._joint: dict[int, Callable[[int], JointProblem]] = {}
+        self._undivided: dict[int, Undivided] = {}
 
     def prepare(self, stacks: int, moves: int = 0) -> tuple[Keyframes, PathProblem]:
-        """Builds the problems for a number of stacks, and P2 for a number of moves, once."""
+        """Builds the problems for a number of stacks, and those for a number of moves, once."""
         if stacks not in self._bounds:
             problems = SwitchProblems(self.model, stacks, self.constraints, self._solver)
-            path = self.path_problem(stacks)
+            path, steps = self.path_problem(stacks), self._shape.steps
 
-            def make(phases: int, kept: Sequence[int]) -> JointProblem:
+            def make(phases: int, kept: Sequence[int] = range(steps)) -> JointProblem:
                 return JointProblem(
                     *(self.model, path.groups, problems.groups, self.limits.acceleration),
-                    *(self._solver, phases, self._shape.steps, kept),
+                    *(self._solver, phases, steps, kept),
                 )
 
             keyframes = Keyframes(problems, self.inverse, path, make, self._shape)
             keyframes.problem(_PUT_DOWN)
             self._bounds[stacks] = (keyframes, path)
-            self._joint[stacks] = cache(lambda phases: make(phases, range(self._shape.steps)))
+            self._undivided[stacks] = Undivided(problems, path, make, steps)
         keyframes, path = self._bounds[stacks]
         if moves:
             keyframes.problem(2 * moves + 1)
             if self.settings.joint:
-                self.joint_problem(stacks, 2 * moves + 1)
+                self.undivided(stacks).problem(2 * moves + 1)
         return keyframes, path
 
-    def joint_problem(self, stacks: int, phases: int) -> JointProblem:
-        """The path problem undivided, all phases and switches at once, built once."""
+    def undivided(self, stacks: int) -> Undivided:
+        """P3 over all phases and switches at once, for a number of stacks."""
         self.prepare(stacks)
-        return self._joint[stacks](phases)
+        return self._undivided[stacks]
 
     def surround(self, obstacles: Sequence[Obstacle]) -> None:
         """Other obstacles from now on, for a planner that was made with as many or more.
@@ -321,6 +321,13 @@ class MotionPlanner:
             return time_paths(paths, self.limits, self.timing, fingers, first)
 
         paths = [solve_one(index, clear) for index in range(len(phases))]
+        if self.settings.joint and len(phases) > 1:
+            whole = self.undivided(len(phases[0].columns))
+            check()
+            together = whole.solve(phases, joined([path.q for path in paths]), clear)
+            if together is not None and whole.cost(together) < whole.cost(paths):
+                paths = together
+                ways = [way.between(p.q[0], p.q[-1]) for way, p in zip(ways, paths)]
         check()
         if self.obstacles:
             paths, trajectory = refined(

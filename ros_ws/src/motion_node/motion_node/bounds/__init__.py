@@ -6,5 +6,6 @@ from .keyframes import Keyframes
 from .path import PathProblem
 from .pose import Poses, check_widths
 from .switches import SwitchProblems
+from .undivided import Undivided
 
-__all__ = ["JointProblem", "Keyframes", "PathProblem", "Poses", "SwitchProblems", "check_widths"]
+__all__ = ["JointProblem", "Keyframes", "PathProblem", "Poses", "SwitchProblems", "Undivided", "check_widths"]

@@ -50,6 +50,11 @@ def least_through(costs: Sequence[DifferenceCost], kept: Sequence[int]) -> list[
     return found
 
 
+def joined(parts: Sequence[Array]) -> Array:
+    """The configurations of phases (steps + 1, n) as one array: each begins where one ends."""
+    return np.vstack([parts[0], *[part[1:] for part in parts[1:]]])
+
+
 def _accelerations(phases: int, intervals: int) -> Array:
     """Second differences over the steps of phases, each at rest at both ends.
 

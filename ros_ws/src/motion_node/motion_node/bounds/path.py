@@ -26,7 +26,7 @@ from ..phases import Phase, PhasePath
 from ..robots.inverse_kinematics import InverseKinematics
 from ..robots.model import ArmModel
 from ..settings import PathSettings
-from .costs import path_costs
+from .costs import joined, path_costs
 from .groups import grouped
 from .way import Way, guesses
 
@@ -203,22 +203,22 @@ class PathProblem:
         self, ways: Sequence[Way], demands: Sequence[Demand], first: Sequence[Array]
     ) -> Iterator[tuple[Array, bool]]:
         """Starting points in the order in which they are tried, and how thoroughly."""
-        straight = _joined(first or guesses(ways, self._inverse, *_TRIES[0]))
+        straight = joined(first or guesses(ways, self._inverse, *_TRIES[0]))
         if not self.obstacles:
             yield straight, True
             for attempt in _TRIES[1:]:
-                yield _joined(guesses(ways, self._inverse, *attempt)), True
+                yield joined(guesses(ways, self._inverse, *attempt)), True
             return
         hopeful = self._missed(straight, demands) < _HOPEFUL
         if hopeful:
             yield straight, False
         around = [way.guesses_round(self._inverse, self.obstacles, _ROUND) for way in ways]
         for found in zip(*around):
-            yield _joined(found), False
+            yield joined(found), False
         if not hopeful:
             yield straight, False
         for attempt in _TRIES[1:]:
-            yield _joined(guesses(ways, self._inverse, *attempt)), False
+            yield joined(guesses(ways, self._inverse, *attempt)), False
 
     def _missed(self, x: Array, demands: Sequence[Demand]) -> float:
         """By how much a starting point misses what is asked most [m or rad]."""
@@ -238,8 +238,3 @@ class PathProblem:
         ]
         worst, steps_a_phase = max(found, key=lambda item: item[0].amount)
         return worst.error(PATH, phases[worst.step // steps_a_phase])
-
-
-def _joined(parts: Sequence[Array]) -> Array:
-    """The starting points of phases as one."""
-    return np.vstack([parts[0], *[part[1:] for part in parts[1:]]])

@@ -21,7 +21,7 @@ from ..constraints import Clearances
 from ..errors import PATH, InfeasibleError
 from ..expand import Choice, expand
 from ..nlp import Demand
-from ..phases import HOME, PLACE, Phase
+from ..phases import PLACE, Phase
 from ..planner import MotionPlanner
 from .levers import Table
 

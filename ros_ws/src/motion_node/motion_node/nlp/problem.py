@@ -59,14 +59,12 @@ class Solution:
 
     Attributes:
         x: configurations, fixed ones included, shape (steps, n).
-        cost: value of the cost up to the constant of the fixed configurations.
         violations: for each attached part, shape (len(steps), rows) [m or rad].
         solver: which solver found it.
         iterations: how many it took.
     """
 
     x: Array
-    cost: float
     violations: tuple[Array, ...]
     solver: str
     iterations: int
@@ -116,7 +114,6 @@ class KOrderProblem:
         free, fixed_rows = self._unknowns(self.free), self._unknowns(self.fixed)
         self._hessian = full[np.ix_(free, free)]
         self._coupling = full[np.ix_(free, fixed_rows)]
-        self._constant = full[np.ix_(fixed_rows, fixed_rows)]
         self._made, self._make_solver = self._program(), solver
         self._coming: MachineCode | None = MachineCode(self._made.jacobian)
         if not self._take_machine_code():
@@ -211,24 +208,22 @@ class KOrderProblem:
         Args:
             x: shape (steps, n): the given configurations, and the starting point of the others.
             demands: one for each attached part.
-            lower, upper: joint limits, broadcast to (steps, n) [rad].
+            lower, upper: joint limits, shape (n,) or (steps, n) [rad].
             thorough: whether, of several solvers in turn, those behind the first one are asked.
         """
         self._take_machine_code()
         instance = self._instance(x, demands, lower, upper)
-        given = x[self.fixed].ravel()
         solver = self._solver if thorough else quickest(self._solver)
         found = solver.solve(instance)
-        z = found.z
         solved = np.array(x, dtype=float)
-        solved[self.free] = z.reshape(-1, self.dimension)
-        ends = np.cumsum([demand.lower.size for demand in demands])[:-1]
-        parts = np.split(instance.excess(found.values), ends)
-        constant = float(given @ self._constant @ given) / 2
+        solved[self.free] = found.z.reshape(-1, self.dimension)
+        excess, violations, end = instance.excess(found.values), list[Array](), 0
+        for demand in demands:
+            begin, end = end, end + demand.lower.size
+            violations.append(excess[begin:end].reshape(demand.lower.shape))
         return Solution(
             x=solved,
-            cost=float(z @ self._hessian @ z / 2 + instance.linear @ z) + constant,
-            violations=tuple(part.reshape(d.lower.shape) for part, d in zip(parts, demands)),
+            violations=tuple(violations),
             solver=found.solver,
             iterations=found.iterations,
         )
@@ -242,13 +237,20 @@ class KOrderProblem:
     def _instance(
         self, x: Array, demands: Sequence[Demand], lower: Array, upper: Array
     ) -> Instance:
-        shape = (self.steps, self.dimension)
+        def of_the_free(limits: Array) -> Array:
+            if limits.ndim > 1:
+                return limits[self.free].ravel()
+            found = np.empty((len(self.free), self.dimension))
+            found[:] = limits
+            return found.ravel()
+
+        least, most = of_the_free(lower), of_the_free(upper)
         return Instance(
-            start=np.clip(x, lower, upper)[self.free].ravel(),
+            start=np.minimum(np.maximum(x[self.free].ravel(), least), most),
             linear=self._coupling @ x[self.fixed].ravel(),
             parameters=_flat([demand.parameters for demand in demands]),
-            lower_z=np.broadcast_to(lower, shape)[self.free].ravel(),
-            upper_z=np.broadcast_to(upper, shape)[self.free].ravel(),
+            lower_z=least,
+            upper_z=most,
             lower_g=_flat([demand.lower for demand in demands]),
             upper_g=_flat([demand.upper for demand in demands]),
         )
