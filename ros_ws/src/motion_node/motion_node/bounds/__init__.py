@@ -8,4 +8,12 @@ from .pose import Poses, check_widths
 from .switches import SwitchProblems
 from .undivided import Undivided
 
-__all__ = ["JointProblem", "Keyframes", "PathProblem", "Poses", "SwitchProblems", "Undivided", "check_widths"]
+__all__ = [
+    "JointProblem",
+    "Keyframes",
+    "PathProblem",
+    "Poses",
+    "SwitchProblems",
+    "Undivided",
+    "check_widths",
+]

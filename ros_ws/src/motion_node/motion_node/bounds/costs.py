@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What paths cost: squared accelerations and velocities (5.1), and the least of it through knots."""
+"""What paths cost (5.1): squared accelerations and velocities; the least of it through knots."""
 
 from __future__ import annotations
 
