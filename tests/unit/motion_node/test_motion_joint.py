@@ -66,9 +66,7 @@ def test_costs_less_than_phase_by_phase(both: Both) -> None:
     assert whole.cost(both.together) == pytest.approx(cost(both.together))
     assert whole.cost(both.motion.paths) == pytest.approx(cost(both.motion.paths))
     assert cost(both.together) < cost(both.motion.paths)
-    moved = [
-        np.abs(a.q[-1] - b.q[-1]).max() for a, b in zip(both.together, both.motion.paths)
-    ]
+    moved = [np.abs(a.q[-1] - b.q[-1]).max() for a, b in zip(both.together, both.motion.paths)]
     assert max(moved) > 1e-3  # it is the switches that make the difference
 
 
