@@ -76,11 +76,12 @@ class Keyframes:
             InfeasibleError: with bound ``pose``, where one switch alone has no solution.
         """
         switching = [phase for phase in phases if phase.kind != HOME]
-        home, demands = self.problems.model.home, self.problems.demands(switching, clear)
-        poses = self._solve_poses(switching, demands, clear, sampled) if switching else []
-        ways = self._path.ways(phases, [start, *poses, home], clear)
+        home = self.problems.model.home
         if not switching:
-            return ways
+            return self._path.ways(phases, [start, home], clear)
+        demands = self.problems.demands(switching, clear)
+        poses = self._solve_poses(switching, demands, clear, sampled)
+        ways = self._path.ways(phases, [start, *poses, home], clear)
         problem = self.problem(len(phases))
         asked = [self._path.asked(way) for way in ways]
         solution = problem.solve(self._knots(ways), asked, demands, thorough=False)
