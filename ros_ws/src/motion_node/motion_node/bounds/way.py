@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 NEAR_START = 0.15
 #: Stacks farther than this from the line between the ends are passed beside [m].
 BESIDE = 0.14
+#: Between two steps a path may be so much lower than at both [m].
+DIP = 0.001
 #: Starting points among obstacles keep so much more than the margin [m].
 SPARE = 0.01
 
@@ -94,7 +96,7 @@ class Way:
         x, y, z = switch.position_world
         columns = lowered(phase, switch, self._model.arm, clear)
         above_own = phase.columns[switch.stack].top - self._tool_bottom(z) + clear.margin + 0.002
-        lift = max(self._shape.lift, above_own)
+        lift = max(self._shape.lift + DIP, above_own)
         return VerticalEnd(np.array([x, y, switch.yaw]), z, lift, columns)
 
     def _start_end(self) -> VerticalEnd | None:
