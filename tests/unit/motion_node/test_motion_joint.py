@@ -93,7 +93,7 @@ def test_p2_bounds_it_from_below(both: Both) -> None:
     keyframes, path = planner.prepare(3)
     relaxed = keyframes.problem(len(phases))
     x = joined([own.q for own in both.together])
-    ways = path.ways(phases, x[::STEPS], CLEAR)
+    ways = path.ways(phases, list(x[::STEPS]), CLEAR)
     asked = [path.asked(way) for way in ways]
     demands = keyframes.problems.demands(phases[:-1], CLEAR)
     solution = relaxed.solve(x[relaxed.steps], asked, demands)

@@ -37,12 +37,12 @@ def least_through(costs: Sequence[DifferenceCost], kept: Sequence[int]) -> list[
     """
     n, steps = len(costs[0].weights), costs[0].differences.shape[1]
     grams = [cost.differences.T @ cost.differences for cost in costs]
-    left = np.setdiff1d(np.arange(steps), kept)
+    here, left = np.array(kept), np.setdiff1d(np.arange(steps), kept)
     found = []
     for joint, axis in enumerate(np.eye(n)):
         full = sum(cost.weights[joint] * gram for cost, gram in zip(costs, grams))
-        across = full[np.ix_(left, kept)]
-        least = full[np.ix_(kept, kept)]
+        across = full[np.ix_(left, here)]
+        least = full[np.ix_(here, here)]
         least = least - across.T @ np.linalg.solve(full[np.ix_(left, left)], across)
         values, vectors = np.linalg.eigh(least)
         root = (vectors * np.sqrt(np.maximum(values, 0.0))).T
