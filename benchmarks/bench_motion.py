@@ -18,6 +18,7 @@ from typing import Final
 
 import numpy as np
 import pybullet_data
+from joint_starts import Gap, gap_to_joint
 from motion_in_graph import PERIOD, MotionInGraph
 from motion_peers import Peers
 from motion_scenes import BASES, random_heights, random_moves, scene
@@ -42,6 +43,9 @@ BLOCKS: Final = 6
 LENGTHS: Final = ((1, 0.010, None), (3, 0.020, 0.06), (6, 0.035, 0.06), (12, 0.070, 0.06))
 #: Of these moves durations are looked at.
 TIMED: Final = 6
+#: Of these moves the path problem is solved undivided, too, from so many starting points.
+UNDIVIDED: Final = (1, 3, 6)
+STARTS: Final = 6
 #: Of these moves one is corrected under way, for a block that was shifted so far [m], in the first
 #: part of the way to it.
 CORRECTED: Final = 3
@@ -164,6 +168,43 @@ def duration_rows(planner: MotionPlanner, peers: Peers | None, count: int) -> li
                 "ours do not")
         )  # fmt: skip
     return rows
+
+
+def joint_rows(planner: MotionPlanner, count: int) -> list[Row]:
+    """What is lost by solving the path problem phase by phase, between the switches of P2."""
+    rows, every = list[Row](), list[Gap]()
+    for moves in UNDIVIDED:
+        planner.undivided(len(BASES)).problem(2 * moves + 1)
+        finish()
+        found = list[Gap]()
+        for seed in tqdm(range(FIRST_SEED, FIRST_SEED + count), desc=f"{moves} moves, undivided"):
+            motion = solve(planner, random_problem(moves, seed))
+            if motion is not None:
+                rng = np.random.default_rng([seed, 2])
+                found.append(gap_to_joint(planner, motion, STARTS, rng))
+        every += found
+        name = f"{moves} moves" if moves > 1 else "1 move"
+        rows += _gap_rows(name, found, "<= 0.03")
+    worst = max(gap.cost for gap in every)
+    return [
+        *rows,
+        Row("all of these", "cost above that of the joint problem, worst", worst, "", len(every),
+            required="<= 0.03", note="the joint problem from the best of several starting points"),
+        Row("all of these", "plans whose cost is more than 3 % above that of the joint problem",
+            sum(gap.cost > 0.03 for gap in every), "", len(every)),
+    ]  # fmt: skip
+
+
+def _gap_rows(name: str, found: Sequence[Gap], required: str) -> list[Row]:
+    costs, durations = [gap.cost for gap in found], [gap.duration for gap in found]
+    return [
+        Row(name, "cost above that of the joint problem, median", statistics.median(costs), "",
+            len(costs), (min(costs), max(costs)), required,
+            note=f"all phases and switches at once, the best of {STARTS} starting points and ours"),
+        Row(name, "duration above that of the joint problem, median",
+            statistics.median(durations), "", len(durations), (min(durations), max(durations)),
+            note="of the paths that cost least, timed alike; fingers included"),
+    ]  # fmt: skip
 
 
 def correction_rows(planner: MotionPlanner, count: int) -> list[Row]:
@@ -325,6 +366,7 @@ def main() -> None:
     try:
         planner = prepared_planner([moves for moves, *_ in LENGTHS])
         rows = time_rows(planner, peers, count) + duration_rows(planner, peers, count)
+        rows += joint_rows(planner, count)
         rows += correction_rows(planner, count) + graph_rows(planner, count)
     finally:
         if peers is not None:

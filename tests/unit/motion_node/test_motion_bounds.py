@@ -99,8 +99,9 @@ def test_keyframes_reach_their_switches(planner: MotionPlanner) -> None:
             planner.settings.phases,
             0.006,
         )
-        configurations = keyframes.solve(HOME, phases[:-1], Clearances(0.015, 0.0))
-        for phase, q in zip(phases, configurations):
+        ways = keyframes.solve(HOME, phases, Clearances(0.015, 0.0))
+        for phase, way in zip(phases[:-1], ways):
+            q = way.goal_q
             point, yaw = planner.model.hand_at(q)
             assert phase.switch is not None
             assert point == pytest.approx(phase.switch.position_world, abs=2e-4)
@@ -122,7 +123,7 @@ def test_dividing_the_path_problem_by_phases_loses_nothing(planner: MotionPlanne
     )
     keyframes, divided = planner.prepare(3)
     clear = Clearances(0.015, 0.0)
-    ends = [HOME, *keyframes.solve(HOME, phases[:-1], clear), HOME]
+    ends = [HOME, *(way.goal_q for way in keyframes.solve(HOME, phases, clear))]
     undivided = planner.path_problem(3, phases=len(phases))
     together = undivided.solve(phases, ends, clear)
     apart = [

@@ -80,7 +80,7 @@ def test_a_place_that_moved_is_reached_with_the_block_in_hand(
     planner: MotionPlanner, motion: Motion
 ) -> None:
     way = motion.trajectory.intervals[2]
-    at = way.start + 0.2 * (way.end - way.start)
+    at = way.start + 0.15 * (way.end - way.start)
     x, y, z = GRAPH.places[2].position_world
     places = (*GRAPH.places[:2], replace(GRAPH.places[2], position_world=(x - 0.02, y + 0.02, z)))
     after = corrected(planner, motion, at, replace(GRAPH, places=places), MOVES)

@@ -19,36 +19,40 @@ from motion_node.planner import MotionPlanner
 from motion_node.settings import Settings
 
 OPEN = np.array([0.04, 0.04])
-SIZE, EQUATIONS, INEQUALITIES = 5, 2, 6
+SIZE, EQUATIONS, INEQUALITIES = 6, 2, 6
 ROWS = EQUATIONS + INEQUALITIES
 
 
-def linear_program() -> Program:
-    """Rows A z, whose sparse entries are parameters: its solution is that of one QP."""
+def linear_program(joints: int) -> Program:
+    """Rows A z, whose sparse entries are parameters: its solution is that of one QP.
+
+    The first equation is one of the first configuration alone.
+    """
     rng = np.random.default_rng(3)
     z = ca.MX.sym("z", SIZE)
     p = ca.MX.sym("p", SIZE + ROWS * SIZE)
-    matrix = ca.reshape(p[SIZE:], ROWS, SIZE) * ca.DM(rng.random((ROWS, SIZE)) < 0.7)
-    matrix = ca.sparsify(ca.DM(rng.random((ROWS, SIZE)) < 0.7)) * matrix
+    pattern = rng.random((ROWS, SIZE)) < 0.7
+    pattern[0] = np.arange(SIZE) < joints
+    matrix = ca.sparsify(ca.DM(pattern)) * ca.reshape(p[SIZE:], ROWS, SIZE)
     g = ca.mtimes(matrix, z)
-    root = rng.normal(size=(SIZE, SIZE))
-    hessian = root @ root.T + 0.1 * np.eye(SIZE)
+    root = rng.normal(size=(SIZE // joints, SIZE // joints))
+    hessian = np.kron(root @ root.T, np.diag(rng.uniform(0.5, 2.0, joints))) + 0.1 * np.eye(SIZE)
     cost = ca.mtimes(z.T, ca.mtimes(ca.DM(hessian), z)) / 2 + ca.dot(p[:SIZE], z)
     function = ca.Function("nlp_jac_g", [z, p], [g, matrix], ["x", "p"], ["g", "jac_g_x"])
     library = machine_code(function)
     function = loaded(function, library)
-    return Program(z, p, cost, g, hessian, function, library, lambda: function)
+    return Program(z, p, cost, g, hessian, joints, function, library, lambda: function)
 
 
-@pytest.fixture(scope="module")
-def both() -> tuple[SqpInC, Sqp]:
-    program = linear_program()
+@pytest.fixture(scope="module", params=[1, 2, 3], ids=lambda joints: f"{joints} joints")
+def both(request: pytest.FixtureRequest) -> tuple[SqpInC, Sqp]:
+    program = linear_program(request.param)
     quick = make_sqp(program)
     assert isinstance(quick, SqpInC)  # a compiler is there wherever the workspace can be built
     return quick, Sqp(program)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), tight=st.floats(0.0, 1.0))
 def test_quadratic_programs_have_one_solution(
     both: tuple[SqpInC, Sqp], seed: int, tight: float

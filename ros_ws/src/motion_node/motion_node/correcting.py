@@ -24,6 +24,7 @@ from .dense_check import check as dense_check
 from .errors import KEYFRAMES, PATH, InfeasibleError
 from .expand import Choice, expand
 from .motion import Motion
+from .nlp import TOLERANCE
 from .phases import HOME, PLACE, Phase
 from .planner import MotionPlanner
 from .refining import objection
@@ -84,10 +85,16 @@ def corrected(
     ends = [q[-1] for q, phase in zip(before, left) if phase.kind != HOME]
     if switching:
         demands = keyframes.problems.demands(switching, clear)
-        solution = keyframes.problems.solve(positions.arm, ends, demands)
-        if not solution.feasible:
-            raise keyframes.problems.error(KEYFRAMES, solution, switching)
-        ends = list(solution.x[1:-1])
+        near = _nearest(planner, switching, np.array(ends))
+        if keyframes.problems.excess(near, demands).max() == 0.0 and _there(
+            planner, switching, near
+        ):
+            ends = list(near)
+        else:
+            solution = keyframes.problems.solve(positions.arm, ends, demands)
+            if not solution.feasible:
+                raise keyframes.problems.error(KEYFRAMES, solution, switching)
+            ends = list(solution.x[1:-1])
     configurations = [positions.arm, *ends, planner.model.home]
     # P3, from the ways as they were.
     paths = []
@@ -114,6 +121,25 @@ def corrected(
         if contacts:
             raise objection(contacts[0])
     return found
+
+
+def _nearest(planner: MotionPlanner, phases: Sequence[Phase], q: Array) -> Array:
+    """Configurations (k, n) with the hand at the phases' switches, the elbow where it was."""
+    yaws = [planner.model.hand_at(own)[1] for own in q]
+    turned = [
+        phase.switch.yaw + np.pi * np.round((yaw - phase.switch.yaw) / np.pi)
+        for phase, yaw in zip(phases, yaws)
+        if phase.switch
+    ]
+    return planner.inverse.solve(_points(phases), np.array(turned), q)
+
+
+def _there(planner: MotionPlanner, phases: Sequence[Phase], q: Array) -> bool:
+    return bool(np.abs(planner.inverse.residual(q, _points(phases))).max() < TOLERANCE)
+
+
+def _points(phases: Sequence[Phase]) -> Array:
+    return np.array([phase.switch.position_world for phase in phases if phase.switch])
 
 
 def _from_here(phase: Phase) -> Phase:

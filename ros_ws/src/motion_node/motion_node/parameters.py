@@ -59,6 +59,13 @@ PARAMETERS = (
         check=_solver_problem,
     ),
     ParameterSpec(
+        "joint",
+        _SETTINGS.joint,
+        "Whether all phases of a plan and the switches between them are optimised at once, from "
+        "what phase by phase gives. It takes two to ten times as long.",
+        read_only=True,
+    ),
+    ParameterSpec(
         "obstacles",
         "",
         "File that says what stands around besides blocks; the arm and what it holds keep away.",
@@ -306,6 +313,7 @@ def planner_settings(values: Mapping[str, Any]) -> Settings:
         timing=timing_settings(values),
         squeeze=values["grasp_squeeze"],
         solver=values["solver"],
+        joint=values["joint"],
     )
 
 

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from itertools import pairwise
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from scene_graph import Move, SceneGraph
 
 from .blocks import Scene, read_scene
-from .bounds import Keyframes, PathProblem, SwitchProblems, check_widths
+from .bounds import JointProblem, Keyframes, PathProblem, SwitchProblems, Undivided, check_widths
+from .bounds.costs import joined
 from .choosing import solve_choosing
 from .constraints import (
     Clearances,
@@ -42,7 +43,7 @@ from .expand import (
 from .motion import Motion
 from .nlp import SOLVERS
 from .obstacles import Obstacle
-from .phases import HOME, PLACE, Phase, PhasePath
+from .phases import PLACE, Phase, PhasePath
 from .refining import FREE, refined
 from .robots import PANDA, Arm
 from .robots.inverse_kinematics import InverseKinematics
@@ -55,6 +56,9 @@ from .timing.trajectory import Trajectory
 __all__ = ["Motion", "MotionPlanner"]
 
 Array = NDArray[np.float64]
+
+#: Phases that are left when a block is in the hand and no more is to be done than put it down.
+_PUT_DOWN: Final = 2
 
 
 class MotionPlanner:
@@ -109,18 +113,35 @@ class MotionPlanner:
         self.limits = JointLimits(self.model.kinematics.velocity, np.array(arm.acceleration))
         self.timing = self.settings.timing
         self._bounds: dict[int, tuple[Keyframes, PathProblem]] = {}
+        self._undivided: dict[int, Undivided] = {}
 
     def prepare(self, stacks: int, moves: int = 0) -> tuple[Keyframes, PathProblem]:
-        """Builds the problems for a number of stacks, and P2 for a number of moves, once."""
+        """Builds the problems for a number of stacks, and those for a number of moves, once."""
         if stacks not in self._bounds:
             problems = SwitchProblems(self.model, stacks, self.constraints, self._solver)
-            path = self.path_problem(stacks)
-            keyframes = Keyframes(problems, self.inverse)
+            path, steps = self.path_problem(stacks), self._shape.steps
+
+            def make(phases: int, kept: Sequence[int] = range(steps)) -> JointProblem:
+                return JointProblem(
+                    *(self.model, path.groups, problems.groups, self.limits.acceleration),
+                    *(self._solver, phases, steps, kept),
+                )
+
+            keyframes = Keyframes(problems, self.inverse, path, make, self._shape)
+            keyframes.problem(_PUT_DOWN)
             self._bounds[stacks] = (keyframes, path)
+            self._undivided[stacks] = Undivided(problems, path, make, steps)
         keyframes, path = self._bounds[stacks]
         if moves:
-            keyframes.problems.problem(2 * moves)
+            keyframes.problem(2 * moves + 1)
+            if self.settings.joint:
+                self.undivided(stacks).problem(2 * moves + 1)
         return keyframes, path
+
+    def undivided(self, stacks: int) -> Undivided:
+        """P3 over all phases and switches at once, for a number of stacks."""
+        self.prepare(stacks)
+        return self._undivided[stacks]
 
     def surround(self, obstacles: Sequence[Obstacle]) -> None:
         """Other obstacles from now on, for a planner that was made with as many or more.
@@ -284,20 +305,29 @@ class MotionPlanner:
         check_widths(phases, self.settings.phases.max_grasp_width)
         keyframes, problem = self.prepare(len(phases[0].columns))
         clear = Clearances(self.settings.path.margin, floor)
-        switching = [phase for phase in phases if phase.kind != HOME]
-        configurations = [arm, *keyframes.solve(arm, switching, clear, sampled), self.model.home]
-        ends = list(pairwise(configurations))
-        guesses = problem.guesses(phases, configurations, clear)
+        ways = keyframes.solve(arm, phases, clear, sampled)
+        guesses = problem.guesses(ways)
 
         def solve_one(index: int, kept: Clearances) -> PhasePath:
             check()
-            return problem.solve([phases[index]], ends[index], kept, [guesses[index]])[0]
+            way = ways[index]
+            if kept is clear:
+                return problem.solve_ways([way], [guesses[index]])[0]
+            ends = [way.start_q, way.goal_q]
+            return problem.solve([way.phase], ends, kept, [guesses[index]])[0]
 
         def timed(paths: Sequence[PhasePath]) -> Trajectory:
             first = self.arm.gripper.finger_travel if opening else None
             return time_paths(paths, self.limits, self.timing, fingers, first)
 
         paths = [solve_one(index, clear) for index in range(len(phases))]
+        if self.settings.joint and len(phases) > 1:
+            whole = self.undivided(len(phases[0].columns))
+            check()
+            together = whole.solve(phases, joined([path.q for path in paths]), clear)
+            if together is not None and whole.cost(together) < whole.cost(paths):
+                paths = together
+                ways = [way.between(p.q[0], p.q[-1]) for way, p in zip(ways, paths)]
         check()
         if self.obstacles:
             paths, trajectory = refined(

@@ -52,6 +52,7 @@ class Settings:
         squeeze: how much farther than the block's half width each finger is sent [m].
         limit_margin: distance kept to the joints' position limits [rad].
         solver: a name of :data:`motion_node.nlp.SOLVERS`.
+        joint: whether all phases and switches are optimised at once, from what they are one by one.
     """
 
     phases: PhaseSettings = field(default_factory=PhaseSettings)
@@ -60,3 +61,4 @@ class Settings:
     squeeze: float = 0.01
     limit_margin: float = 0.05
     solver: str = DEFAULT_SOLVER
+    joint: bool = False

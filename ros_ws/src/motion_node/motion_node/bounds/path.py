@@ -20,12 +20,13 @@ from numpy.typing import NDArray
 
 from ..constraints import AlongPath, Clearances, Constraint
 from ..errors import PATH, InfeasibleError
-from ..nlp import Attached, Demand, DifferenceCost, KOrderProblem, Solution, SolverFactory
+from ..nlp import Attached, Demand, KOrderProblem, Solution, SolverFactory
 from ..obstacles import Obstacle
 from ..phases import Phase, PhasePath
 from ..robots.inverse_kinematics import InverseKinematics
 from ..robots.model import ArmModel
 from ..settings import PathSettings
+from .costs import joined, path_costs
 from .groups import grouped
 from .way import Way, guesses
 
@@ -50,6 +51,7 @@ class PathProblem:
 
     Attributes:
         obstacles: may be changed.
+        groups: what it keeps to, by the steps of a phase.
     """
 
     def __init__(
@@ -67,40 +69,32 @@ class PathProblem:
         self._model, self._inverse, self._settings = model, inverse, settings
         self.obstacles = tuple(obstacles)
         intervals = settings.steps
-        weights = (np.median(acceleration) / acceleration) ** 2 * intervals**3 / 10.0
-        steps = phases * intervals + 1
-        velocities = np.eye(steps)[1:] - np.eye(steps)[:-1]
         own_steps = [constraint.path_steps(settings) for constraint in constraints]
-        self._groups = grouped(own_steps, constraints, model, stacks)
+        self.groups = grouped(own_steps, constraints, model, stacks)
         self._problem = KOrderProblem(
             model.dimension,
-            steps,
+            phases * intervals + 1,
             fixed=[k * intervals for k in range(phases + 1)],
-            costs=[
-                DifferenceCost(_accelerations(phases, intervals), weights),
-                DifferenceCost(velocities, np.full(model.dimension, 3.0 * intervals)),
-            ],
+            costs=path_costs(phases, intervals, acceleration),
             attached=[
                 Attached(group.rows, tuple(k * intervals + s for k in range(phases) for s in own))
-                for own, group in self._groups
+                for own, group in self.groups
             ],
             solver=solver,
         )
 
-    def guesses(
-        self, phases: Sequence[Phase], configurations: Sequence[Array], clear: Clearances
-    ) -> list[Array]:
-        """The first starting point of each of any number of phases, as for :meth:`solve`."""
-        ways = self._ways(phases, configurations, clear)
+    def guesses(self, ways: Sequence[Way]) -> list[Array]:
+        """The first starting point of each of any number of ways, as for :meth:`solve_ways`."""
         return guesses(ways, self._inverse, *_TRIES[0])
 
-    def _ways(
+    def ways(
         self,
         phases: Sequence[Phase],
         configurations: Sequence[Array],
         clear: Clearances,
         moving: bool = False,
     ) -> list[Way]:
+        """Of consecutive phases between configurations at their ends, one more than phases."""
         return [
             Way(self._model, self._settings, phase, start, goal, clear, moving)
             for phase, start, goal in zip(phases, configurations, configurations[1:])
@@ -119,17 +113,23 @@ class PathProblem:
         Args:
             phases: as many as the problem was built for.
             configurations: at their ends, one more than phases, each of shape (n,) [rad].
-            first: what ``guesses`` found, if it was asked.
+            first: starting points, where there are any better ones than ``guesses``.
             second: the configuration after the first one, shape (n,) [rad], where the arm moves
                 already: both are the prefix of 3.4; None: it is at rest.
 
         Raises:
             InfeasibleError: with bound ``path``, naming the constraint that is violated most.
         """
-        settings = self._settings
-        ways = self._ways(phases, configurations, clear, moving=second is not None)
+        ways = self.ways(phases, configurations, clear, moving=second is not None)
+        return self.solve_ways(ways, first, second)
+
+    def solve_ways(
+        self, ways: Sequence[Way], first: Sequence[Array] = (), second: Array | None = None
+    ) -> list[PhasePath]:
+        """As :meth:`solve`, where the ways are known."""
+        settings, phases = self._settings, [way.phase for way in ways]
         demands = self._demands(ways)
-        lower, upper = self._limits(configurations)
+        lower, upper = self._limits(ways[0].start_q)
         if second is not None:
             shape = (len(phases) * settings.steps + 1, 1)
             lower, upper = np.tile(lower, shape), np.tile(upper, shape)
@@ -148,37 +148,39 @@ class PathProblem:
 
     def along(self, phase: Phase, ends: Sequence[Array], clear: Clearances) -> AlongPath:
         """What constraints are told of one phase between its first and last configuration."""
-        return self._ways([phase], [ends[0], ends[-1]], clear)[0].along
+        return self.ways([phase], [ends[0], ends[-1]], clear)[0].along
 
     def demands(self, phase: Phase, ends: Sequence[Array], clear: Clearances) -> list[Demand]:
         """What is asked of one phase between two configurations."""
-        return self._demands(self._ways([phase], ends, clear))
+        return self._demands(self.ways([phase], ends, clear))
 
     def _demands(self, ways: Sequence[Way]) -> list[Demand]:
-        return [
-            Demand.after_one_another([group.along_path(way.along, way.start_q) for way in ways])
-            for _, group in self._groups
-        ]
+        asked = [self.asked(way) for way in ways]
+        return [Demand.after_one_another(own) for own in zip(*asked)]
 
-    def _limits(self, configurations: Sequence[Array]) -> tuple[Array, Array]:
+    def asked(self, way: Way) -> list[Demand]:
+        """What is asked of one way, of each group; worked out once."""
+        if not way.asked:
+            way.asked += [group.along_path(way.along, way.start_q) for _, group in self.groups]
+        return way.asked
+
+    def _limits(self, start_q: Array) -> tuple[Array, Array]:
         # Where the measured start is a little outside its limits, it may come back in its own time.
         model = self._model
-        return np.minimum(model.lower, configurations[0]), np.maximum(
-            model.upper, configurations[0]
-        )
+        return np.minimum(model.lower, start_q), np.maximum(model.upper, start_q)
 
     def straight_starts(
         self, phase: Phase, ends: Sequence[Array], clear: Clearances
     ) -> Iterator[Array]:
         """Starting points over the stacks, whatever else stands around."""
-        ways = self._ways([phase], ends, clear)
+        ways = self.ways([phase], ends, clear)
         for attempt in _TRIES:
             yield guesses(ways, self._inverse, *attempt)[0]
 
     def missed(self, x: Array, demands: Sequence[Demand], phase: Phase) -> list[str]:
         """What a path (steps + 1, n) misses, each row in words."""
         found = []
-        for (_, group), missed in zip(self._groups, self._excess(x, demands)):
+        for (_, group), missed in zip(self.groups, self._excess(x, demands)):
             found += group.missed(missed, phase)
         return found
 
@@ -194,36 +196,36 @@ class PathProblem:
 
         See :meth:`KOrderProblem.least_changes`.
         """
-        limits = self._limits([start[0]])
+        limits = self._limits(start[0])
         return self._problem.least_changes(start, demands, unit, changed, reach, limits)
 
     def _starts(
         self, ways: Sequence[Way], demands: Sequence[Demand], first: Sequence[Array]
     ) -> Iterator[tuple[Array, bool]]:
         """Starting points in the order in which they are tried, and how thoroughly."""
-        straight = _joined(first or guesses(ways, self._inverse, *_TRIES[0]))
+        straight = joined(first or guesses(ways, self._inverse, *_TRIES[0]))
         if not self.obstacles:
             yield straight, True
             for attempt in _TRIES[1:]:
-                yield _joined(guesses(ways, self._inverse, *attempt)), True
+                yield joined(guesses(ways, self._inverse, *attempt)), True
             return
         hopeful = self._missed(straight, demands) < _HOPEFUL
         if hopeful:
             yield straight, False
         around = [way.guesses_round(self._inverse, self.obstacles, _ROUND) for way in ways]
         for found in zip(*around):
-            yield _joined(found), False
+            yield joined(found), False
         if not hopeful:
             yield straight, False
         for attempt in _TRIES[1:]:
-            yield _joined(guesses(ways, self._inverse, *attempt)), False
+            yield joined(guesses(ways, self._inverse, *attempt)), False
 
     def _missed(self, x: Array, demands: Sequence[Demand]) -> float:
         """By how much a starting point misses what is asked most [m or rad]."""
         return max((float(m.max(initial=0.0)) for m in self._excess(x, demands)), default=0.0)
 
     def _excess(self, x: Array, demands: Sequence[Demand]) -> Iterator[Array]:
-        for (steps, group), demand in zip(self._groups, demands):
+        for (steps, group), demand in zip(self.groups, demands):
             at = [k + s for k in range(0, len(x) - 1, self._settings.steps) for s in steps]
             q = (x[np.floor(at).astype(int)] + x[np.ceil(at).astype(int)]) / 2
             values = np.array(group.rows.value(q.T, demand.parameters.T)).T
@@ -232,27 +234,7 @@ class PathProblem:
     def _error(self, phases: Sequence[Phase], solution: Solution) -> InfeasibleError:
         found = [
             (group.worst(own), len(steps))
-            for (steps, group), own in zip(self._groups, solution.violations)
+            for (steps, group), own in zip(self.groups, solution.violations)
         ]
         worst, steps_a_phase = max(found, key=lambda item: item[0].amount)
         return worst.error(PATH, phases[worst.step // steps_a_phase])
-
-
-def _joined(parts: Sequence[Array]) -> Array:
-    """The starting points of phases as one."""
-    return np.vstack([parts[0], *[part[1:] for part in parts[1:]]])
-
-
-def _accelerations(phases: int, intervals: int) -> Array:
-    """Second differences over the steps of phases, each at rest at both ends.
-
-    By central differences: x_{-1} = x_1 and x_{T+1} = x_{T-1}, which stand for the prefix of 3.4.
-    """
-    result = np.zeros((phases * (intervals + 1), phases * intervals + 1))
-    for k in range(phases):
-        index = intervals - np.abs(intervals - np.abs(np.arange(-1, intervals + 2)))
-        index += k * intervals
-        for row in range(intervals + 1):
-            for offset, factor in enumerate((1.0, -2.0, 1.0)):
-                result[k * (intervals + 1) + row, index[row + offset]] += factor
-    return result

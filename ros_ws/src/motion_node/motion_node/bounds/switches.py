@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The problems over the switches of phases, which P1 and P2 share.
+"""The problems over the switches of phases alone: P1, and what corrections begin with.
 
 They minimise the squared joint distances between consecutive switches. For a path from rest to rest
 in a time T the least integral of squared accelerations is 12 |q_b - q_a|^2 / T^3, so this is the
-value that P3 would have without its path constraints: a lower bound, and the right place to decide
-what P3 then keeps fixed, the switches themselves.
+value that P3 would have without its path constraints, were all joints of the same weight.
 """
 
 from __future__ import annotations
@@ -29,7 +28,11 @@ POSTURE_WEIGHT = 0.02
 
 
 class SwitchProblems:
-    """One problem for each number of switches, each built once, for a number of stacks."""
+    """One problem for each number of switches, each built once, for a number of stacks.
+
+    Attributes:
+        groups: what is asked at switches.
+    """
 
     def __init__(
         self,
@@ -41,7 +44,7 @@ class SwitchProblems:
         self.model = model
         self._solver = solver
         acting = [constraint for constraint in constraints if constraint.at_switches]
-        self._groups = [group for _, group in grouped([(0,)] * len(acting), acting, model, stacks)]
+        self.groups = [group for _, group in grouped([(0,)] * len(acting), acting, model, stacks)]
         self._problems: dict[int, KOrderProblem] = {}
         self._values: dict[int, list[ca.Function]] = {}
 
@@ -62,7 +65,7 @@ class SwitchProblems:
                     DifferenceCost(differences, np.ones(n)),
                     DifferenceCost(posture[1:-1], POSTURE_WEIGHT * np.ones(n)),
                 ],
-                attached=[Attached(group.rows, free) for group in self._groups],
+                attached=[Attached(group.rows, free) for group in self.groups],
                 solver=self._solver,
             )
         return self._problems[count]
@@ -70,7 +73,7 @@ class SwitchProblems:
     def demands(self, phases: Sequence[Phase], clear: Clearances) -> list[Demand]:
         """What is asked at the end of each phase."""
         moments = [AtSwitch(self.model.arm, phase, clear) for phase in phases]
-        return [group.at_switches(moments) for group in self._groups]
+        return [group.at_switches(moments) for group in self.groups]
 
     def solve(
         self,
@@ -94,8 +97,8 @@ class SwitchProblems:
         """
         count, total = len(q), np.zeros(len(q))
         if count not in self._values:
-            self._values[count] = [group.rows.value.map(count) for group in self._groups]
-        for function, group, demand in zip(self._values[count], self._groups, demands):
+            self._values[count] = [group.rows.value.map(count) for group in self.groups]
+        for function, group, demand in zip(self._values[count], self.groups, demands):
             values = np.array(function(q.T, demand.parameters.T)).T
             total += demand.excess(values)[:, group.compared].sum(axis=1)
         return total
@@ -107,7 +110,7 @@ class SwitchProblems:
             demands: of one switch.
         """
         found = []
-        for group, demand in zip(self._groups, demands):
+        for group, demand in zip(self.groups, demands):
             values = np.array(group.rows.value(q, demand.parameters[0])).reshape(1, -1)
             found.append(group.worst(np.where(group.compared, demand.excess(values), 0.0)))
         return max(found, key=lambda violation: violation.amount)
@@ -119,7 +122,7 @@ class SwitchProblems:
             demands: of the phase's switch.
         """
         found = []
-        for group, demand in zip(self._groups, demands):
+        for group, demand in zip(self.groups, demands):
             values = np.array(group.rows.value(q, demand.parameters[0])).reshape(1, -1)
             missed = np.where(group.compared, demand.excess(values), 0.0)
             found += group.missed(missed, phase)
@@ -144,6 +147,6 @@ class SwitchProblems:
 
     def error(self, bound: str, solution: Solution, phases: Sequence[Phase]) -> InfeasibleError:
         """Names the constraint that a solution violates most."""
-        found = [group.worst(own) for group, own in zip(self._groups, solution.violations)]
+        found = [group.worst(own) for group, own in zip(self.groups, solution.violations)]
         worst = max(found, key=lambda violation: violation.amount)
         return worst.error(bound, phases[worst.step])

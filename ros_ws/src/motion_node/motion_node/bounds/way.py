@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from copy import copy
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..blocks import Column
 from ..constraints import AlongPath, Clearances, VerticalEnd, lowered
+from ..nlp import Demand
 from ..obstacles import Obstacle
 from ..phases import Phase, Switch
 from ..robots.inverse_kinematics import InverseKinematics
@@ -25,6 +27,8 @@ Array = NDArray[np.float64]
 NEAR_START = 0.15
 #: Stacks farther than this from the line between the ends are passed beside [m].
 BESIDE = 0.14
+#: Between two steps a path may be so much lower than at both [m].
+DIP = 0.001
 #: Starting points among obstacles keep so much more than the margin [m].
 SPARE = 0.01
 
@@ -56,7 +60,9 @@ class Way:
         moving: whether the arm is on its way already at the start, and need not rise first.
 
     Attributes:
+        phase: what it is the way of.
         along: what constraints are told of it.
+        asked: what they ask for, once that was worked out.
     """
 
     def __init__(
@@ -69,25 +75,32 @@ class Way:
         clear: Clearances,
         moving: bool = False,
     ) -> None:
-        self._model, self._shape, self._phase, self._clear = model, shape, phase, clear
-        self.start_q, self._goal_q = start, goal
+        self._model, self._shape, self.phase, self._clear = model, shape, phase, clear
+        self.start_q, self.goal_q = start, goal
         first = None if moving else self._start_end()
         last = self._switch_end(phase.switch) if phase.switch else None
         self.along = AlongPath(model.arm, phase, clear, shape, first, last)
+        self.asked: list[Demand] = []
+
+    def between(self, start: Array, goal: Array) -> Way:
+        """The same from a switch, or from where it starts, to a switch in other configurations."""
+        other = copy(self)
+        other.start_q, other.goal_q = start, goal
+        return other
 
     def _tool_bottom(self, tcp_height: float) -> float:
-        return tcp_height + self._model.arm.gripper.tcp_offset - self._phase.tool.bottom
+        return tcp_height + self._model.arm.gripper.tcp_offset - self.phase.tool.bottom
 
     def _switch_end(self, switch: Switch) -> VerticalEnd:
-        phase, clear = self._phase, self._clear
+        phase, clear = self.phase, self._clear
         x, y, z = switch.position_world
         columns = lowered(phase, switch, self._model.arm, clear)
         above_own = phase.columns[switch.stack].top - self._tool_bottom(z) + clear.margin + 0.002
-        lift = max(self._shape.lift, above_own)
+        lift = max(self._shape.lift + DIP, above_own)
         return VerticalEnd(np.array([x, y, switch.yaw]), z, lift, columns)
 
     def _start_end(self) -> VerticalEnd | None:
-        phase, reserve = self._phase, self._clear.reserve
+        phase, reserve = self.phase, self._clear.reserve
         if phase.start is not None:
             return self._switch_end(phase.start)
         (x, y, z), yaw = self._model.hand_at(self.start_q)
@@ -119,14 +132,14 @@ class Way:
             higher: how much higher than needed to pass over the stacks [m].
             inwards: share by which the way across is drawn towards the arm's base.
         """
-        shape, phase = self._shape, self._phase
+        shape, phase = self._shape, self.phase
         hanging = phase.tool.bottom - self._model.arm.gripper.tcp_offset
         top = max([column.top for column in phase.columns if self._passed(column)], default=0.0)
         across = top + hanging + self._clear.reserve + 0.01 + higher
         share = 1.6 * shape.vertical / shape.steps
         ends = (
             (self.along.first, self.start_q, share),
-            (self.along.last, self._goal_q, 1 - share),
+            (self.along.last, self.goal_q, 1 - share),
         )
         found = []
         for end, q, when in ends:
@@ -142,7 +155,7 @@ class Way:
         Args:
             shares: of the way at which it is at the configurations ``between``, each (n,) [rad].
         """
-        knots = np.array([self.start_q, *between, self._goal_q])
+        knots = np.array([self.start_q, *between, self.goal_q])
         return _hats(self._shape.steps, (0.0, *shares, 1.0)) @ knots
 
     def guesses_round(
@@ -154,7 +167,7 @@ class Way:
         """
         shape, along = self._shape, self.along
         ends, yaws = [], []
-        for end, q in ((along.first, self.start_q), (along.last, self._goal_q)):
+        for end, q in ((along.first, self.start_q), (along.last, self.goal_q)):
             point, yaw = self._model.hand_at(q)
             if end is not None:
                 point = np.array([*end.reference[:2], end.height + end.lift + SPARE])
@@ -163,12 +176,12 @@ class Way:
         margin, floor = self._clear.margin + SPARE, self._clear.floor
         gripper = self._model.arm.gripper
         grid = HandGrid(
-            gripper, self._phase, obstacles, np.array(ends), np.array(yaws), margin, floor
+            gripper, self.phase, obstacles, np.array(ends), np.array(yaws), margin, floor
         )
         first = shape.vertical if along.first else 0
         last = shape.steps - (shape.vertical if along.last else 0)
         share = np.linspace(0.0, 1.0, last - first + 1)
-        near = self.start_q + share[:, None] * (self._goal_q - self.start_q)
+        near = self.start_q + share[:, None] * (self.goal_q - self.start_q)
         turned = yaws[0] + share * _half_turn(yaws[1] - yaws[0])
         at = np.arange(shape.steps + 1)
         for way in grid.ways(count):
@@ -177,7 +190,7 @@ class Way:
                 [np.interp(share * lengths[-1], lengths, axis) for axis in way.T]
             )
             q = inverse.solve(points, turned, near)
-            knots = np.vstack([self.start_q, q, self._goal_q])
+            knots = np.vstack([self.start_q, q, self.goal_q])
             when = np.concatenate([[-1e-9], at[first : last + 1], [shape.steps + 1e-9]])
             yield np.column_stack([np.interp(at, when, column) for column in knots.T])
 

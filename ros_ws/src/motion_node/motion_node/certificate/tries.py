@@ -21,7 +21,7 @@ from ..constraints import Clearances
 from ..errors import PATH, InfeasibleError
 from ..expand import Choice, expand
 from ..nlp import Demand
-from ..phases import HOME, PLACE, Phase
+from ..phases import PLACE, Phase
 from ..planner import MotionPlanner
 from .levers import Table
 
@@ -160,13 +160,11 @@ class Tries:
     def _ends(
         self, keyframes: Keyframes, phases: Sequence[Phase], index: int
     ) -> tuple[Array, Array] | None:
-        switching = [phase for phase in phases if phase.kind != HOME]
         try:
-            found = keyframes.solve(self._arm, switching, self._clear, sampled=True)
+            way = keyframes.solve(self._arm, phases, self._clear, sampled=True)[index]
         except InfeasibleError:
             return None
-        configurations = [self._arm, *found, self._planner.model.home]
-        return configurations[index], configurations[index + 1]
+        return way.start_q, way.goal_q
 
 
 def _same(start: Array, demands: Sequence[Demand]) -> bytes:

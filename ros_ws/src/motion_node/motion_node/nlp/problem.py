@@ -28,6 +28,9 @@ from .solver import SolverFactory, quickest
 
 Array = NDArray[np.float64]
 
+#: So small beside others, an entry of the Hessian comes from rounding: the Hessian is banded.
+ROUNDING = 1e-12
+
 
 @dataclass(frozen=True)
 class DifferenceCost:
@@ -56,14 +59,12 @@ class Solution:
 
     Attributes:
         x: configurations, fixed ones included, shape (steps, n).
-        cost: value of the cost up to the constant of the fixed configurations.
         violations: for each attached part, shape (len(steps), rows) [m or rad].
         solver: which solver found it.
         iterations: how many it took.
     """
 
     x: Array
-    cost: float
     violations: tuple[Array, ...]
     solver: str
     iterations: int
@@ -104,14 +105,15 @@ class KOrderProblem:
         self.free = np.array([step for step in range(steps) if step not in set(fixed)])
         self.fixed = np.array(sorted(set(fixed)), dtype=int)
         self.attached = tuple(attached)
+        self._costs = tuple(costs)
         full = np.zeros((steps * dimension, steps * dimension))
         for cost in costs:
             gram = cost.differences.T @ cost.differences
             full += 2.0 * np.kron(gram, np.diag(cost.weights))
+        full[np.abs(full) < ROUNDING * np.abs(full).max()] = 0.0
         free, fixed_rows = self._unknowns(self.free), self._unknowns(self.fixed)
         self._hessian = full[np.ix_(free, free)]
         self._coupling = full[np.ix_(free, fixed_rows)]
-        self._constant = full[np.ix_(fixed_rows, fixed_rows)]
         self._made, self._make_solver = self._program(), solver
         self._coming: MachineCode | None = MachineCode(self._made.jacobian)
         if not self._take_machine_code():
@@ -179,7 +181,7 @@ class KOrderProblem:
         jacobian = ca.Function(
             "nlp_jac_g", [z, p], [g, ca.vertcat(*jacobians)], ["x", "p"], ["g", "jac_g_x"]
         )
-        return Program(z, p, cost, g, self._hessian, jacobian, None, make_curvature)
+        return Program(z, p, cost, g, self._hessian, n, jacobian, None, make_curvature)
 
     def _take_machine_code(self) -> bool:
         """Goes over to machine code when there is some that was not there before."""
@@ -206,38 +208,49 @@ class KOrderProblem:
         Args:
             x: shape (steps, n): the given configurations, and the starting point of the others.
             demands: one for each attached part.
-            lower, upper: joint limits, broadcast to (steps, n) [rad].
+            lower, upper: joint limits, shape (n,) or (steps, n) [rad].
             thorough: whether, of several solvers in turn, those behind the first one are asked.
         """
         self._take_machine_code()
         instance = self._instance(x, demands, lower, upper)
-        given = x[self.fixed].ravel()
         solver = self._solver if thorough else quickest(self._solver)
         found = solver.solve(instance)
-        z = found.z
         solved = np.array(x, dtype=float)
-        solved[self.free] = z.reshape(-1, self.dimension)
-        ends = np.cumsum([demand.lower.size for demand in demands])[:-1]
-        parts = np.split(instance.excess(found.values), ends)
-        constant = float(given @ self._constant @ given) / 2
+        solved[self.free] = found.z.reshape(-1, self.dimension)
+        excess, violations, end = instance.excess(found.values), list[Array](), 0
+        for demand in demands:
+            begin, end = end, end + demand.lower.size
+            violations.append(excess[begin:end].reshape(demand.lower.shape))
         return Solution(
             x=solved,
-            cost=float(z @ self._hessian @ z / 2 + instance.linear @ z) + constant,
-            violations=tuple(part.reshape(d.lower.shape) for part, d in zip(parts, demands)),
+            violations=tuple(violations),
             solver=found.solver,
             iterations=found.iterations,
+        )
+
+    def cost(self, x: Array) -> float:
+        """Of configurations (steps, n), whether they keep to the constraints or not."""
+        return sum(
+            float((cost.weights * (cost.differences @ x) ** 2).sum()) for cost in self._costs
         )
 
     def _instance(
         self, x: Array, demands: Sequence[Demand], lower: Array, upper: Array
     ) -> Instance:
-        shape = (self.steps, self.dimension)
+        def of_the_free(limits: Array) -> Array:
+            if limits.ndim > 1:
+                return limits[self.free].ravel()
+            found = np.empty((len(self.free), self.dimension))
+            found[:] = limits
+            return found.ravel()
+
+        least, most = of_the_free(lower), of_the_free(upper)
         return Instance(
-            start=np.clip(x, lower, upper)[self.free].ravel(),
+            start=np.minimum(np.maximum(x[self.free].ravel(), least), most),
             linear=self._coupling @ x[self.fixed].ravel(),
             parameters=_flat([demand.parameters for demand in demands]),
-            lower_z=np.broadcast_to(lower, shape)[self.free].ravel(),
-            upper_z=np.broadcast_to(upper, shape)[self.free].ravel(),
+            lower_z=least,
+            upper_z=most,
             lower_g=_flat([demand.lower for demand in demands]),
             upper_g=_flat([demand.upper for demand in demands]),
         )

@@ -31,6 +31,7 @@ class Program:
         p: symbols of the linear cost, then of the constraints' parameters.
         cost, g: expressions of z and p.
         hessian: H, constant and positive definite, shape (z, z).
+        block: number of the unknowns that are one configuration.
         jacobian: (z, p) -> (g, dg/dz), sparse.
         library: which has it as machine code; None where there is none.
         make_curvature: makes (z, p, factor, multipliers) -> upper triangle of the Hessian of
@@ -42,6 +43,7 @@ class Program:
     cost: ca.MX
     g: ca.MX
     hessian: Array
+    block: int
     jacobian: ca.Function
     library: Path | None
     make_curvature: Callable[[], ca.Function]

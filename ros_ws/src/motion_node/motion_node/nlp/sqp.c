@@ -35,15 +35,17 @@ static int infinite(int count, const double *values) {
 
 /* Solves from z, which becomes where it converged or gave up; `values` are those there.
  *
- * offset: the minimum of the cost; lower, upper: of the constraints, then of the unknowns.
+ * linear: cost; lower, upper: of the constraints, then of the unknowns.
  * Returns the number of steps, or -1 without memory. */
-int sqp(const Problem *problem, const double *p, const double *offset, const double *lower,
+int sqp(const Problem *problem, const double *p, const double *linear, const double *lower,
         const double *upper, double *z, double *values) {
     const Shape *shape = &problem->shape;
     const int n = shape->variables, rows = shape->rows, all = n + rows;
-    const size_t reals = problem->reals + problem->entries + (size_t)2 * n * n + 7 * n + 2 * all;
+    const size_t square = (size_t)n * n;
+    const size_t reals = problem->reals + problem->entries + 2 * square + (9 + shape->block) * n
+        + 2 * all;
     double *room = malloc(reals * sizeof(double));
-    int *indices = malloc((size_t)(n + all) * sizeof(int));
+    int *indices = malloc((size_t)(3 * n + all) * sizeof(int));
     long long *integers = malloc((problem->integers + 1) * sizeof(long long));
     const double **arguments = malloc((problem->arguments + 2) * sizeof(double *));
     double **results = malloc((problem->results + 2) * sizeof(double *));
@@ -58,8 +60,13 @@ int sqp(const Problem *problem, const double *p, const double *offset, const dou
     active.share = active.part + n;
     active.direction = active.share + n;
     active.across = active.direction + n;
-    active.pushed = active.across + n;
-    active.factor = active.pushed + (size_t)n * n;
+    active.factor = active.across + n;
+    active.freedom.start = active.where + all;
+    active.freedom.size = active.freedom.start + n;
+    active.freedom.factor = active.factor + square;
+    active.freedom.basis = active.freedom.factor + square;
+    active.freedom.y = active.freedom.basis + (size_t)shape->block * n;
+    double *gradient = active.freedom.y + n;
     double step = INFINITY, trust = problem->trust;
     for (taken = 0;; ++taken) {
         arguments[0] = z;
@@ -78,9 +85,10 @@ int sqp(const Problem *problem, const double *p, const double *offset, const dou
         for (int i = 0; i < n; ++i) {
             low[rows + i] = fmax(lower[rows + i] - z[i], -trust);
             high[rows + i] = fmin(upper[rows + i] - z[i], trust);
-            x[i] = offset[i] - z[i];
+            gradient[i] = linear[i];
         }
-        if (!quadratic(shape, jacobian, low, high, &active, x)) break;
+        times(shape, z, gradient);
+        if (!quadratic(shape, jacobian, gradient, low, high, &active, x)) break;
         /* Without the constraints' curvature, steps can go to and fro; shorter ones settle. A step
          * that ends at a limit of half the one before has done its part: rounding must not decide
          * whether it is cut again. */

@@ -43,8 +43,8 @@ class _Problem(ctypes.Structure):
     """``Problem`` of ``sqp.c``."""
 
     _fields_ = (
-        *((name, ctypes.c_int) for name in ("variables", "rows")),
-        *((name, ctypes.c_void_p) for name in ("inverse", "begin", "column", "place")),
+        *((name, ctypes.c_int) for name in ("variables", "rows", "block")),
+        *((name, ctypes.c_void_p) for name in ("hessian", "first", "begin", "column", "place")),
         ("constraints", ctypes.c_void_p),
         *((name, ctypes.c_int) for name in ("arguments", "results", "integers", "reals")),
         *((name, ctypes.c_int) for name in ("entries", "most")),
@@ -56,21 +56,28 @@ class SqpInC:
     """See :class:`Sqp`. The lock of the interpreter is free meanwhile."""
 
     def __init__(self, program: Program, steps: ctypes.CDLL, constraints: ctypes.CDLL) -> None:
-        self._inverse = np.linalg.inv(program.hessian)
-        self._variables, self._rows = len(self._inverse), program.g.numel()
+        block, size = program.block, len(program.hessian)
+        blocks = size // block
+        whole = program.hessian.reshape(blocks, block, blocks, block)
+        hessian = np.ascontiguousarray(np.einsum("bkck->bck", whole))
+        if np.count_nonzero(hessian) != np.count_nonzero(whole):
+            raise ValueError("the cost of a joint depends on another joint")
+        first = np.argmax((hessian != 0.0).any(axis=2), axis=1).astype(np.intc)
+        self._rows = program.g.numel()
         # The Jacobian's entries come by columns; rows are needed.
         slopes = program.jacobian.sparsity_out(1)
         rows, columns = (np.array(own, dtype=np.intc) for own in slopes.get_triplet())
         order = np.lexsort((columns, rows)).astype(np.intc)
         begin = np.searchsorted(rows[order], np.arange(self._rows + 1)).astype(np.intc)
-        self._kept = (self._inverse, begin, columns[order], order, steps, constraints)
+        self._kept = (hessian, first, begin, columns[order], order, steps, constraints)
         name = program.jacobian.name()
         room = [ctypes.c_longlong() for _ in range(4)]
         getattr(constraints, f"{name}_work")(*map(ctypes.byref, room))
         self._problem = _Problem(
-            self._variables,
+            size,
             self._rows,
-            *(array.ctypes.data for array in self._kept[:4]),
+            block,
+            *(array.ctypes.data for array in self._kept[:5]),
             ctypes.cast(getattr(constraints, name), ctypes.c_void_p).value,
             *(int(size.value) for size in room),
             len(order),
@@ -91,10 +98,10 @@ class SqpInC:
             MemoryError: if there is none left.
         """
         z, values = instance.start.copy(), np.empty(self._rows)
-        p, offset = instance.p, -self._inverse @ instance.linear
+        p, linear = instance.p, instance.linear
         lower = np.concatenate([instance.lower_g, instance.lower_z])
         upper = np.concatenate([instance.upper_g, instance.upper_z])
-        given = (p, offset, lower, upper, z, values)
+        given = (p, linear, lower, upper, z, values)
         steps = self._solve(self._address, *(array.ctypes.data for array in given))
         if steps < 0:
             raise MemoryError("no memory for sequential quadratic programming")
