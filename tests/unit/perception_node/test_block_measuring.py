@@ -120,7 +120,6 @@ def test_where_little_deviation_is_stated_cuboids_are_where_they_are_measured(
     assert_where_they_are_measured(place, boxes)
 
 
-@pytest.mark.xfail(reason="how deep they are is hardly seen: taken for cubes", strict=True)
 def test_so_are_cuboids_seen_straight_from_in_front() -> None:
     boxes = [((depth, 0.03125, 0.03125), 0.0) for depth in (0.046875, 0.04296875)]
     assert_where_they_are_measured(1, boxes)

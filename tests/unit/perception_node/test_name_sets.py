@@ -81,6 +81,44 @@ def test_in_coloured_light_there_is_no_set() -> None:
     assert possible_colors(explain_colors(warm), warm, None, 10.0) is None
 
 
+Paints = dict[str, tuple[float, float, float]]
+
+
+@pytest.mark.parametrize(
+    ("exposure", "plain", "paints"),
+    [
+        (
+            0.937,
+            ("blue", "purple", "red", "brown"),
+            {"orange": (0.966, 0.663, 0.073), "pink": (0.925, 0.358, 0.473)},
+        ),
+        (
+            0.902,
+            ("blue", "green", "yellow"),
+            {"pink": (0.93, 0.378, 0.502), "orange": (0.971, 0.601, 0.064)},
+        ),
+        (
+            1.097,
+            ("blue", "cyan", "green"),
+            {"purple": (0.305, 0.199, 0.748), "orange": (0.925, 0.331, 0.071)},
+        ),
+    ],
+    ids=["orange as yellow", "orange and pink", "purple as blue"],
+)
+def test_paints_that_look_plain_in_a_strange_light_are_in_doubt(
+    exposure: float, plain: tuple[str, ...], paints: Paints
+) -> None:
+    """Two of them at once are explained well by a light that is reddish, but no lamp's."""
+    true = (*plain, *paints)
+    colors = np.array([*(COLORS[name] for name in plain), *paints.values()])
+    colors, table = 0.785 * exposure * colors, exposure * np.array([0.82, 0.78, 0.72])
+    fit = explain_colors(colors, table)
+    assert not fit.known.all() or (fit.margins < MIN_MARGIN).any()
+    sets = possible_colors(fit, colors, table, load_name_sets().threshold)
+    assert sets is not None
+    assert all(name in some for name, some in zip(true, sets))
+
+
 @given(st.lists(st.floats(0.0, 20.0), min_size=1, max_size=300), st.floats(0.5, 0.99))
 def test_the_threshold_leaves_as_many_above_it_as_the_coverage_allows(
     scores: list[float], coverage: float

@@ -56,6 +56,10 @@ _WHITE_ENOUGH: Final = 5.0
 _ENOUGH: Final = 3
 #: A block of no known colour says nothing of the light beyond this cost [ΔE²].
 _MOST_COST: Final = 150.0
+#: Daylight and lamps are cool or warm: red rises as blue falls. From the logarithms of both gains
+#: how warm a light is, and how far beside those, shape (2, 2); of most lights it is at most this.
+_WARMTH: Final = np.array([[0.53, -0.85], [0.85, 0.53]])
+_USUAL_LIGHT: Final = np.array([0.3, 0.11])
 #: Colours are compared as if each were as bright as this, by one of these gains, so that dark ones
 #: are told apart as well as bright ones are.
 _BRIGHTNESS: Final = 0.2
@@ -65,6 +69,10 @@ _LUMINANCE: Final = np.array([0.3, 0.5, 0.2])
 #: than to the next one [ΔE].
 MAX_DISTANCE: Final = 7.5
 MIN_MARGIN: Final = 5.0
+#: Two blocks whose paints are between two colours look as plain ones do in a strange light. Where
+#: such a light explains a scene best, a block of no known colour costs no more than this, that one
+#: at the greatest distance has the least margin, so that names have to be better than none [ΔE²].
+_MOST_COST_IF_STRANGE: Final = MAX_DISTANCE**2 + MIN_MARGIN**2
 
 _XYZ_FROM_RGB: Final = np.array(
     [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
@@ -124,12 +132,25 @@ def explain_colors(colors: Array, table: Array | None = None) -> ColorFit:
     enough = len(colors) >= _ENOUGH and white.distances.max() < _WHITE_ENOUGH
     if enough and white.margins.min() >= MIN_MARGIN:
         return white
-    coarse = _explain(colors, table, _lights(_GAINS))
-    fine = _explain(colors, table, coarse.light * _lights(_FINER_GAINS))
+    found = _in_any_light(colors, table, _MOST_COST)
+    if _is_strange(found.light):
+        found = _in_any_light(colors, table, _MOST_COST_IF_STRANGE)
+    return found
+
+
+def _in_any_light(colors: Array, table: Array | None, most: float) -> ColorFit:
+    """The same for lights of any colour; ``most`` is what a block without a name costs [ΔE²]."""
+    coarse = _explain(colors, table, _lights(_GAINS), most)
+    fine = _explain(colors, table, coarse.light * _lights(_FINER_GAINS), most)
     # A light far from the best one may explain the blocks by other names.
     margins = np.minimum(fine.margins, coarse.margins)
     gaps = np.minimum(fine.gaps, coarse.gaps)
     return ColorFit(fine.names, fine.others, fine.distances, margins, fine.light, gaps)
+
+
+def _is_strange(light: Array) -> bool:
+    """Whether few lights have this colour, gains of red, green and blue."""
+    return bool((np.abs(_WARMTH @ np.log(light[[0, 2]])) > _USUAL_LIGHT).any())
 
 
 def _lights(gains: Array) -> Array:
@@ -138,11 +159,13 @@ def _lights(gains: Array) -> Array:
     return np.stack([red, np.ones_like(red), blue], axis=-1)
 
 
-def _explain(colors: Array, table: Array | None, gains: Array) -> ColorFit:
+def _explain(
+    colors: Array, table: Array | None, gains: Array, most: float = _MOST_COST
+) -> ColorFit:
     """The same for lights of certain colours only, shape (lights, 3)."""
     diffuse, metal = _distances(_linear(colors), table, gains)
     # A shade that differs by so many steps costs more than no name.
-    reach = int(np.sqrt(_MOST_COST / _OWN_SHADE_COST) / _STEP) + 2
+    reach = int(np.sqrt(most / _OWN_SHADE_COST) / _STEP) + 2
     costs = np.empty((len(_SHADES), *metal.shape), np.float32)
     for scene in range(len(_SHADES)):
         cost = costs[scene]
@@ -151,7 +174,7 @@ def _explain(colors: Array, table: Array | None, gains: Array) -> ColorFit:
             np.minimum(
                 cost, diffuse[own] + _OWN_SHADE_COST * (_STEP * (own - scene)) ** 2, out=cost
             )
-    bounded = np.minimum(costs, _MOST_COST)  # (shades of the scene, lights, N, names)
+    bounded = np.minimum(costs, most)  # (shades of the scene, lights, N, names)
     least_own = bounded.min(axis=3)
     tint = _GAIN_COST * (np.log(gains) ** 2).sum(axis=1)
     unusual = _SCENE_SHADE_COST * np.log(_SHADES / _USUAL_SHADE) ** 2

@@ -68,6 +68,7 @@ class BlockSurface:
             be relied on.
         seen_low: z of about the lowest of its points that are seen [m].
         behind: whether it is rather seen behind the block below it than on it; by outlines only.
+        sharp: whether depth has no noise and edges are where the picture shows them.
     """
 
     shape: str
@@ -82,6 +83,7 @@ class BlockSurface:
     upright: bool = True
     seen_low: float = 0.0
     behind: bool = False
+    sharp: bool = False
 
 
 def measure_blocks(
@@ -119,10 +121,11 @@ def measure_blocks(
             ) from error
     surfaces = []
     fits, rivals = _best(evidence, noise)
+    sharp = noise < NOISY and edge_doubt == 0.0
     for best, item, rival in zip(fits, evidence, rivals):
         far = FLAT + FLAT_NOISE * float(quantiles(item.noise, 0.5)[0])
         upright = best.distance <= far and best.cost <= BAD
-        surfaces.append(replace(_surface(best, item), rival=rival, upright=upright))
+        surfaces.append(replace(_surface(best, item), rival=rival, upright=upright, sharp=sharp))
     return tuple(surfaces)
 
 
