@@ -6,6 +6,7 @@ import os
 import select
 import subprocess
 import sys
+import weakref
 from pathlib import Path
 
 import casadi as ca
@@ -91,7 +92,9 @@ def test_what_is_no_c_has_no_library(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("cache")
 def test_machine_code_comes_in_the_background(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(MachineCode, "compile_later", lambda self: compilations().put(self))
+    monkeypatch.setattr(
+        MachineCode, "compile_later", lambda self: compilations().put(weakref.ref(self))
+    )
     coming = [MachineCode(some_function(factor)) for factor in (2.0, 3.0)]
     finish()
     assert all(one.ready.is_set() for one in coming)
@@ -99,6 +102,19 @@ def test_machine_code_comes_in_the_background(monkeypatch: pytest.MonkeyPatch) -
         function = some_function(factor)
         assert one.library is not None
         assert_same(loaded(function, one.library), function)
+
+
+def test_machine_code_that_nobody_keeps_is_not_compiled(
+    cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    waiting: list[weakref.ref[MachineCode]] = []
+    monkeypatch.setattr(
+        MachineCode, "compile_later", lambda self: waiting.append(weakref.ref(self))
+    )
+    MachineCode(some_function(4.0))
+    compilations().put(waiting[0])
+    finish()
+    assert not cache.exists() or not list(cache.iterdir())
 
 
 def test_a_process_that_ends_ends_its_compiler(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import queue
 import threading
+import weakref
 from functools import cache
 from pathlib import Path
 from typing import Final
@@ -28,7 +29,8 @@ def machine_code(function: ca.Function) -> Path | None:
 class MachineCode:
     """Machine code of a function of casadi, which is there at once if it was compiled before.
 
-    Else it is compiled in the background, after what was asked for earlier.
+    Else it is compiled in the background, after what was asked for earlier, unless nobody keeps
+    this any more by then.
 
     Attributes:
         ready: set when it has come, or when it is clear that there will be none.
@@ -46,7 +48,7 @@ class MachineCode:
 
     def compile_later(self) -> None:
         """Has it compiled in the background."""
-        compilations().put(self)
+        compilations().put(weakref.ref(self))
 
     def come(self) -> None:
         """Compiles it now, if that has not been done."""
@@ -57,21 +59,23 @@ class MachineCode:
 
 
 def finish() -> None:
-    """Waits until all machine code has come that was asked for."""
+    """Waits until all machine code has come that was asked for and is still wanted."""
     compilations().join()
 
 
 @cache
-def compilations() -> queue.Queue[MachineCode]:
+def compilations() -> queue.Queue[weakref.ref[MachineCode]]:
     """What is still to compile, and the thread that does, which ends with the process."""
-    waiting: queue.Queue[MachineCode] = queue.Queue()
+    waiting: queue.Queue[weakref.ref[MachineCode]] = queue.Queue()
 
     def work() -> None:
         while True:
-            coming = waiting.get()
+            coming = waiting.get()()
             try:
-                coming.come()
+                if coming is not None:
+                    coming.come()
             finally:
+                del coming
                 waiting.task_done()
 
     threading.Thread(target=work, name="compiler", daemon=True).start()

@@ -80,6 +80,46 @@ class Solution:
         return self.violation <= TOLERANCE
 
 
+class _Pattern:
+    """Where the slopes of attached parts belong in the Jacobian of all of them.
+
+    They are put there in one go: code that joins matrices part by part grows with their number,
+    and takes a compiler ten seconds where many phases are solved at once.
+
+    Args:
+        dimension: n, number of joints.
+        count: of free configurations.
+    """
+
+    def __init__(self, dimension: int, count: int) -> None:
+        self._dimension, self._count = dimension, count
+        self._rows, self._columns = [np.zeros(0, int)], [np.zeros(0, int)]
+        self._sources, self._shares = [np.zeros(0, int)], [np.zeros(0)]
+        self._height = self._given = 0
+
+    def add(self, slope: ca.Sparsity, columns: Sequence[Sequence[int]]) -> None:
+        """Slopes of one structure, given one after another, and the configurations of each."""
+        row, column = (np.array(places, int) for places in slope.get_triplet())
+        for own in columns:
+            for configuration in own:
+                self._rows.append(self._height + row)
+                self._columns.append(configuration * self._dimension + column)
+                self._sources.append(self._given + np.arange(len(row)))
+                self._shares.append(np.full(len(row), 1.0 / len(own)))
+            self._height += slope.size1()
+            self._given += len(row)
+
+    def filled(self, slopes: ca.MX) -> ca.MX:
+        """The Jacobian, from what is not zero of all slopes."""
+        rows, columns = np.concatenate(self._rows), np.concatenate(self._columns)
+        order = np.lexsort((rows, columns))
+        width = self._count * self._dimension
+        begins = np.searchsorted(columns[order], np.arange(width + 1))
+        sparsity = ca.Sparsity(self._height, width, begins.tolist(), rows[order].tolist())
+        shares = ca.DM(np.concatenate(self._shares)[order])
+        return ca.MX(sparsity, slopes.nz[np.concatenate(self._sources)[order].tolist()] * shares)
+
+
 class KOrderProblem:
     """A problem of fixed structure: built once, solved for many parameters.
 
@@ -131,8 +171,9 @@ class KOrderProblem:
         amounts = [len(item.steps) * item.rows.count for item in self.attached]
         p = ca.MX.sym("p", count * n + sum(sizes))
         linear, *flat = ca.vertsplit(p, np.cumsum([0, count * n, *sizes]).tolist())
-        by_step = ca.horzsplit(ca.reshape(z, n, count), 1)
-        values, jacobians = [ca.MX(0, 1)], [ca.MX(0, count * n)]
+        values: list[ca.MX] = [ca.MX(0, 1)]
+        slopes: list[ca.MX] = [ca.MX(0, 1)]
+        pattern = _Pattern(n, count)
         maps: list[tuple[Attached, list[list[int]], ca.MX, ca.MX]] = []
         for item, parameters in zip(self.attached, flat):
             rows, amount = item.rows, len(item.steps)
@@ -140,16 +181,16 @@ class KOrderProblem:
                 [column[index] for index in sorted({floor(step), ceil(step)})]
                 for step in item.steps
             ]
-            here = ca.horzcat(*[sum(by_step[index] for index in own) / len(own) for own in columns])
+            first, last = (
+                z.nz[self._unknowns(np.array([own[end] for own in columns])).tolist()]
+                for end in (0, -1)
+            )
+            here = ca.reshape((first + last) / 2, n, amount)
             given = ca.reshape(parameters, rows.parameter_count, amount)
             maps.append((item, columns, here, given))
             values.append(ca.vec(rows.value.map(amount)(here, given)))
-            slopes = ca.horzsplit(rows.jacobian.map(amount)(here, given), n)
-            for own, slope in zip(columns, slopes):
-                left = ca.MX(rows.count, own[0] * n)
-                right = ca.MX(rows.count, (count - own[-1] - 1) * n)
-                shares = [slope / len(own)] * len(own)
-                jacobians.append(ca.horzcat(left, *shares, right))
+            slopes.append(rows.jacobian.map(amount)(here, given).nz[:])
+            pattern.add(rows.jacobian.sparsity_out(0), columns)
         g: ca.MX = ca.vertcat(*values)
         hessian = ca.sparsify(ca.DM(self._hessian))
         cost = ca.mtimes(z.T, ca.mtimes(hessian, z)) / 2 + ca.dot(linear, z)
@@ -179,8 +220,9 @@ class KOrderProblem:
             )
 
         jacobian = ca.Function(
-            "nlp_jac_g", [z, p], [g, ca.vertcat(*jacobians)], ["x", "p"], ["g", "jac_g_x"]
-        )
+            "nlp_jac_g", [z, p], [g, pattern.filled(ca.vertcat(*slopes))],
+            ["x", "p"], ["g", "jac_g_x"],
+        )  # fmt: skip
         return Program(z, p, cost, g, self._hessian, n, jacobian, None, make_curvature)
 
     def _take_machine_code(self) -> bool:
