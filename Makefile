@@ -27,7 +27,7 @@ lint-docker: setup  ## hadolint on the Dockerfile; nothing is built
 	@$(VENV)/bin/hadolint docker/Dockerfile
 
 test: setup  ## the whole test suite
-	@$(RUN) pytest --numprocesses 4 --dist loadfile $(ARGS)
+	@$(RUN) pytest --numprocesses 3 --dist loadfile $(ARGS)
 
 soak-tests: setup  ## the suite again and again, half of them on a busy machine; RUNS= RESUME=1 QUICK=1
 	@$(RUN) python benchmarks/suite.py $(if $(RUNS),--runs $(RUNS)) $(if $(RESUME),--resume)

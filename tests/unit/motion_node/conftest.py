@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pybullet_data
@@ -13,11 +14,20 @@ from motion_node.nlp import compiled
 from motion_node.planner import MotionPlanner
 
 
-@pytest.fixture(scope="session", autouse=True)
-def _nothing_compiles_in_the_background() -> Iterator[None]:
-    """Solutions do not change in the middle of a test, be it by their last digit."""
+@contextmanager
+def nothing_compiles_in_the_background() -> Iterator[None]:
+    """Solutions do not change in the middle of a test, be it by their last digit.
+
+    Only here: nodes that other tests run in this process go on while something compiles.
+    """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(compiled.MachineCode, "compile_later", compiled.MachineCode.come)
+        yield
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _nothing_compiles_in_the_background() -> Iterator[None]:
+    with nothing_compiles_in_the_background():
         yield
 
 
@@ -29,4 +39,5 @@ def urdf() -> str:
 
 @pytest.fixture(scope="session")
 def planner(urdf: str) -> MotionPlanner:
-    return MotionPlanner(urdf)
+    with nothing_compiles_in_the_background():
+        return MotionPlanner(urdf)

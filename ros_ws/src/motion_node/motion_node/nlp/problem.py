@@ -189,7 +189,7 @@ class KOrderProblem:
             given = ca.reshape(parameters, rows.parameter_count, amount)
             maps.append((item, columns, here, given))
             values.append(ca.vec(rows.value.map(amount)(here, given)))
-            slopes.append(rows.jacobian.map(amount)(here, given).nz[:])
+            slopes.append(ca.vec(rows.jacobian.map(amount)(here, given)).nz[:])
             pattern.add(rows.jacobian.sparsity_out(0), columns)
         g: ca.MX = ca.vertcat(*values)
         hessian = ca.sparsify(ca.DM(self._hessian))
