@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from tamp_runtime import machine_code as module
-from tamp_runtime.machine_code import opened, written
+from tamp_runtime.machine_code import address, opened, written, written_below
 
 from motion_node.nlp.compiled import MachineCode, compilations, finish, loaded, machine_code
 
@@ -79,6 +79,30 @@ def test_c_files_are_compiled_with_those_that_they_include(cache: Path, tmp_path
     assert library is not None
     assert library.more(2) == 7
     assert len(list(cache.iterdir())) == 1
+
+
+def test_c_files_below_a_folder_are_compiled_before_they_are_needed(
+    cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "inner").mkdir()
+    files = [tmp_path / "outer.c", tmp_path / "inner" / "inner.c"]
+    for value, file in enumerate(files, 3):
+        file.write_text(f"int value(void) {{ return {value}; }}\n")
+    written_below(tmp_path)
+    assert len(list(cache.iterdir())) == 2
+    monkeypatch.setattr(module, "compiled", None)  # nothing is left to compile
+    libraries = [written(file) for file in files]
+    assert [library.value() for library in libraries if library is not None] == [3, 4]
+
+
+def test_an_array_lives_as_long_as_its_address() -> None:
+    array = np.arange(3.0)
+    kept = weakref.ref(array)
+    pointer = address(array)
+    del array
+    assert kept() is not None
+    del pointer
+    assert kept() is None
 
 
 @pytest.mark.usefixtures("cache")

@@ -18,7 +18,7 @@ from typing import Any, Final
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from tamp_runtime.machine_code import written
+from tamp_runtime.machine_code import address, written
 
 from .noise import color_noise, depth_noise
 from .observation import Observation
@@ -215,8 +215,9 @@ def _resembled(
         np.ascontiguousarray(rgb), np.ascontiguousarray(span), at.astype(np.int64),
     ]  # fmt: skip
     library.resembled(
-        height, width, _at(own[0]), _at(own[1]), len(at), _at(own[2]), len(ways), _at(ways),
-        _at(best),
+        height, width, address(own[0]), address(own[1]), len(at), address(own[2]), len(ways),
+        address(ways),
+        address(best),
     )  # fmt: skip
     return best
 
@@ -266,7 +267,7 @@ def _bends(depth: Array, limit: float) -> NDArray[np.uint8]:
         return bends_by_numpy(depth, limit)
     depth = np.ascontiguousarray(depth)
     edge = np.empty(depth.shape, np.uint8)
-    if library.bends(*depth.shape, _at(depth), ctypes.c_float(limit), _at(edge)):
+    if library.bends(*depth.shape, address(depth), ctypes.c_float(limit), address(edge)):
         raise MemoryError("no memory to find edges of depth")
     return edge
 
@@ -300,8 +301,9 @@ def fill(depth: Array, rgb: NDArray[np.uint8], reach: int) -> Array:
     known, around = ~np.isnan(depth), np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
     near, filled = cv2.dilate(known.view(np.uint8), around), np.empty_like(depth)
     library.fill(
-        *depth.shape, _at(depth), _at(near), _at(rgb), len(steps), _at(steps), _at(costs),
-        ctypes.c_float(FILL_LIKENESS), _at(filled),
+        *depth.shape, address(depth), address(near), address(rgb), len(steps), address(steps),
+        address(costs),
+        ctypes.c_float(FILL_LIKENESS), address(filled),
     )  # fmt: skip
     return filled
 
@@ -333,7 +335,3 @@ def fill_by_numpy(depth: Array, rgb: NDArray[np.uint8], reach: int) -> Array:
     filled = depth.copy()
     filled.reshape(-1)[at] = best
     return filled
-
-
-def _at(array: NDArray[Any]) -> ctypes.c_void_p:
-    return ctypes.c_void_p(array.ctypes.data)

@@ -19,6 +19,7 @@ from std_msgs.msg import Header
 from std_srvs.srv import Trigger
 from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import ImageToSceneGraph
+from tamp_runtime.machine_code import written_below
 from tamp_runtime.messages.images import (
     ImageError,
     color_from_image,
@@ -119,6 +120,7 @@ class PerceptionNode(Node):
         super().__init__("perception_node", **kwargs)
         self._values = declare_parameters(self, PARAMETERS, self._parameters_changed)
         torch.set_num_threads(self._values["threads"])
+        written_below(Path(__file__).parent)  # now, not at the first picture
         weights = Path(self._values["weights"] or DEFAULT_WEIGHTS)
         module = load_weights(weights)
         self._kept = PlacesKept(

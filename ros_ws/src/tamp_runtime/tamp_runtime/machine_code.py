@@ -20,7 +20,9 @@ import threading
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
+
+from numpy.typing import NDArray
 
 #: Of what is written by hand; for any processor of this kind, as the folder may be shared.
 WRITTEN: Final = ("-O3", "-fopenmp-simd", "-fno-math-errno", "-fno-trapping-math")
@@ -72,6 +74,17 @@ def written(*files: Path) -> ctypes.CDLL | None:
     """C files, of which the first includes the others; None where they cannot be compiled."""
     library = compiled({file.name: file.read_text() for file in files}, WRITTEN)
     return opened(library)
+
+
+def written_below(folder: Path) -> None:
+    """Compiles every C file below a folder, none of which includes another: before it is needed."""
+    for file in sorted(folder.rglob("*.c")):
+        written(file)
+
+
+def address(array: NDArray[Any]) -> ctypes.c_void_p:
+    """Where the values of an array begin, for C; the array lives as long as this does."""
+    return array.ctypes.data_as(ctypes.c_void_p)
 
 
 def opened(library: Path | None) -> ctypes.CDLL | None:

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from tamp_runtime.machine_code import opened, written
+from tamp_runtime.machine_code import address, opened, written
 
 from ..nlp.buffered import Buffered
 from ..nlp.compiled import loaded, machine_code
@@ -74,12 +74,12 @@ class InverseKinematics:
         sizes = np.array([size.value for size in room], dtype=np.intc)
         failed = self._steps.inverse(
             getattr(self._hand, name),
-            ctypes.c_void_p(sizes.ctypes.data),
+            address(sizes),
             *map(ctypes.c_int, (*q.shape, HAND_ROWS)),
-            *(ctypes.c_void_p(a.ctypes.data) for a in (target, model.lower, model.upper)),
+            *map(address, (target, model.lower, model.upper)),
             ctypes.c_int(iterations),
             *map(ctypes.c_double, (_THERE, _DAMPING, _LONGEST)),
-            ctypes.c_void_p(q.ctypes.data),
+            address(q),
         )
         if failed:
             raise MemoryError("no memory for inverse kinematics")

@@ -17,7 +17,7 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from tamp_runtime.machine_code import written
+from tamp_runtime.machine_code import address, written
 
 from .limits import JointLimits
 
@@ -56,10 +56,10 @@ def fastest_squares(
     arrays = [np.ascontiguousarray(array, dtype=float) for array in given]
     failed = library.squares(
         *map(ctypes.c_int, slopes.shape),
-        *(ctypes.c_void_p(array.ctypes.data) for array in arrays),
+        *map(address, arrays),
         *map(ctypes.c_double, (step, -1.0 if first is None else first)),
         *map(ctypes.c_double, (SHORTEST**-2, _TINY, _FAR, ROUNDING)),
-        ctypes.c_void_p(squares.ctypes.data),
+        address(squares),
     )
     if failed < 0:
         raise MemoryError("no memory to time paths")

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
-from tamp_runtime.machine_code import written
+from tamp_runtime.machine_code import address, written
 
 from .limits import JointLimits
 
@@ -76,10 +76,10 @@ def smoothed(
     most = [np.ascontiguousarray(a, dtype=float) for a in (limits.velocity, limits.acceleration)]
     failed = library.smooth(
         *map(ctypes.c_int, (ways, points, joints)),
-        *(ctypes.c_void_p(array.ctypes.data) for array in own),
+        *map(address, own),
         ctypes.c_double(window),
-        *(ctypes.c_void_p(array.ctypes.data) for array in (numbers, *most)),
-        *(ctypes.c_void_p(array.ctypes.data) for array in vars(found).values()),
+        *map(address, (numbers, *most)),
+        *map(address, vars(found).values()),
     )
     if failed:
         raise MemoryError("no memory to smooth ways")

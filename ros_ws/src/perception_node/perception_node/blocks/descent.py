@@ -13,12 +13,12 @@ import ctypes
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from tamp_runtime.machine_code import written
+from tamp_runtime.machine_code import address, written
 
 from perception_node.camera import PinholeCamera
 from scene_graph import BOX, CYLINDER, SPHERE
@@ -253,8 +253,9 @@ def descended(problem: Problem, parameters: Array, trials: int, enough: float) -
         np.empty((blocks, count, count)), np.empty(blocks), np.empty((blocks, points)),
     )  # fmt: skip
     library.descend(
-        ctypes.byref(task), blocks, *map(_at, own), len(extents), _at(extents), _at(limits),
-        trials, *map(ctypes.c_double, (enough, GAIN, MAX_DAMPING)), *map(_at, found),
+        ctypes.byref(task), blocks, *map(address, own), len(extents), address(extents),
+        address(limits),
+        trials, *map(ctypes.c_double, (enough, GAIN, MAX_DAMPING)), *map(address, found),
     )  # fmt: skip
     return found
 
@@ -325,7 +326,3 @@ def _padded(arrays: Sequence[Array]) -> Array:
     for row, item in zip(out, arrays):
         row[: len(item)] = item
     return out
-
-
-def _at(array: NDArray[Any]) -> ctypes.c_void_p:
-    return ctypes.c_void_p(array.ctypes.data)

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
-from tamp_runtime.machine_code import written
+from tamp_runtime.machine_code import address, written
 
 from perception_node.camera import PinholeCamera
 from perception_node.errors import BadImageError
@@ -188,7 +188,7 @@ def _ends(mask: Mask, goes_on: Mask, depth: Array, noise: float) -> tuple[Array,
         return ends_by_numpy(mask, goes_on, depth, noise)
     images = [np.ascontiguousarray(image) for image in (mask, goes_on, depth)]
     points, shared = np.empty((4 * mask.size, 2)), np.empty(4 * mask.size)
-    pointers = (ctypes.c_void_p(image.ctypes.data) for image in (*images, points, shared))
+    pointers = map(address, (*images, points, shared))
     count = library.ends(
         *mask.shape, next(pointers), next(pointers), next(pointers),
         ctypes.c_double(IN_FRONT), ctypes.c_double(noise), next(pointers), next(pointers),

@@ -7,7 +7,7 @@ What is done pixel by pixel is in C (``facets.c``) where that can be compiled, a
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -15,9 +15,9 @@ from typing import Any, Final, NamedTuple
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from tamp_runtime.machine_code import written
+from tamp_runtime.machine_code import address, written
 
-from .pieces import Array, Ids, Mask, at, borders, connected, ends_by_number, sides, spread
+from .pieces import Array, Ids, Mask, borders, connected, ends_by_number, sides, spread
 
 #: Neighbours whose hue and saturation differ by more than this are of two facets: the distance of
 #: their shares of red, green and blue in the sum of the three.
@@ -68,7 +68,9 @@ class Look:
             return cls(*look_by_numpy(rgb, dark))
         rgb = np.ascontiguousarray(rgb)
         chroma, light = np.empty(rgb.shape, np.float32), np.empty(rgb.shape[:2], np.float32)
-        library.look(light.size, at(rgb), ctypes.c_float(float(dark)), at(chroma), at(light))
+        library.look(
+            light.size, address(rgb), ctypes.c_float(float(dark)), address(chroma), address(light)
+        )
         return cls(chroma, light)
 
     def part(self, box: tuple[slice, slice]) -> Look:
@@ -178,11 +180,7 @@ def on_one_body(points: Array, depth: Array) -> list[Mask]:
     library = written(_FILE)
     if library is None:
         return bodies_by_numpy(points, depth)
-    own = [np.ascontiguousarray(array, np.float32) for array in (points, depth)]
-    steps = np.array([DEPTH_STEP, LID_STEP, LID_DEPTH], np.float32)
-    links = _none_linked(depth)
-    library.bodies(*depth.shape, *map(at, own), at(steps), *map(at, links))
-    return links
+    return _linked(library.bodies, [points, depth], [DEPTH_STEP, LID_STEP, LID_DEPTH])
 
 
 def bodies_by_numpy(points: Array, depth: Array) -> list[Mask]:
@@ -202,11 +200,8 @@ def _links(look: Look, depth: Array) -> Sequence[Mask]:
     library = written(_FILE)
     if library is None:
         return links_by_numpy(look, depth)
-    own = [np.ascontiguousarray(array, np.float32) for array in (look.chroma, look.light, depth)]
-    steps = np.array([CHROMA_STEP**2, LIGHT_STEP, DEPTH_STEP], np.float32)
-    links = _none_linked(depth)
-    library.links(*depth.shape, *map(at, own), at(steps), *map(at, links))
-    return links
+    images, steps = [look.chroma, look.light, depth], [CHROMA_STEP**2, LIGHT_STEP, DEPTH_STEP]
+    return _linked(library.links, images, steps)
 
 
 def links_by_numpy(look: Look, depth: Array) -> Sequence[Mask]:
@@ -219,9 +214,15 @@ def links_by_numpy(look: Look, depth: Array) -> Sequence[Mask]:
     return links
 
 
-def _none_linked(image: Array) -> list[Mask]:
-    height, width = image.shape
-    return [np.zeros((height - 1, width), bool), np.zeros((height, width - 1), bool)]
+def _linked(
+    neighbours: Callable[..., Any], images: Sequence[Array], steps: Sequence[float]
+) -> list[Mask]:
+    """Which neighbours C finds linked in images, the last of which is (h, w), by axis."""
+    height, width = images[-1].shape
+    links = [np.zeros((height - 1, width), bool), np.zeros((height, width - 1), bool)]
+    own = [np.ascontiguousarray(array, np.float32) for array in (*images, steps)]
+    neighbours(height, width, *map(address, (*own, *links)))
+    return links
 
 
 class Sums(NamedTuple):
@@ -262,7 +263,7 @@ def sums(facets: Facets, look: Look, points: Array, sure: Mask, few: int) -> Sum
         np.zeros((count, 3)),
         np.zeros((count, 6)),
     )
-    library.sums(facets.ids.size, count, *map(at, own), few, *map(at, found))
+    library.sums(facets.ids.size, count, *map(address, own), few, *map(address, found))
     return found
 
 

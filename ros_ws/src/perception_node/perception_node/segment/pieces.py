@@ -6,7 +6,6 @@ In C (``pieces.c``) where that can be compiled, and else in numpy and OpenCV.
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -14,7 +13,7 @@ from typing import Any, Final, NamedTuple
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from tamp_runtime.machine_code import written
+from tamp_runtime.machine_code import address, written
 
 Array = NDArray[np.float32]
 Mask = NDArray[np.bool_]
@@ -52,7 +51,7 @@ def connected(pixels: Mask, links: Sequence[Mask]) -> tuple[int, Ids]:
         return connected_by_opencv(pixels, links)
     own = [np.ascontiguousarray(array) for array in (pixels, *links)]
     ids = np.empty(pixels.shape, np.int32)
-    count = library.connected(*pixels.shape, *map(at, own), at(ids))
+    count = library.connected(*pixels.shape, *map(address, own), address(ids))
     if count < 0:
         raise MemoryError(_NO_MEMORY)
     return count, ids
@@ -91,7 +90,7 @@ def borders(count: int, *numbered: Ids) -> NDArray[np.int64]:
     ids, most = np.ascontiguousarray(np.stack(numbered), np.int32), 4096
     while True:
         found = np.empty((most, 3), np.int64)
-        pairs = library.borders(*ids.shape[1:], len(ids), at(ids), most, at(found))
+        pairs = library.borders(*ids.shape[1:], len(ids), address(ids), most, address(found))
         if pairs < 0:
             raise MemoryError(_NO_MEMORY)
         if pairs <= most:
@@ -141,10 +140,10 @@ def spread(
     bounds: list[NDArray[Any]] = []
     if heights is not None:
         bounds = [np.ascontiguousarray(heights.of_pixels, np.float32), heights.low, heights.high]
-    first, *among = map(at, images)
+    first, *among = map(address, images)
     failed = library.spread(
-        *labels.shape, at(own), first, times, *(among or (None, None)),
-        *(map(at, bounds) if bounds else (None,) * 3),
+        *labels.shape, address(own), first, times, *(among or (None, None)),
+        *(map(address, bounds) if bounds else (None,) * 3),
     )  # fmt: skip
     if failed:
         raise MemoryError(_NO_MEMORY)
@@ -211,8 +210,9 @@ def ends_by_number(
     own = [np.ascontiguousarray(numbers, np.int32), np.ascontiguousarray(values, np.float32)]
     found, shares = np.full((2, count, values.shape[1]), np.nan), np.array(STRAY) / 100.0
     failed = library.quantiles(
-        len(numbers), at(own[0]), values.shape[1], at(own[1]), count, len(shares), at(shares),
-        at(found),
+        len(numbers), address(own[0]), values.shape[1], address(own[1]), count, len(shares),
+        address(shares),
+        address(found),
     )  # fmt: skip
     if failed:
         raise MemoryError(_NO_MEMORY)
@@ -244,8 +244,3 @@ def _between(axis: int) -> tuple[slice, slice]:
     """Where the lattice holds the links along an axis."""
     odd, even = slice(1, None, 2), slice(None, None, 2)
     return (odd, even) if axis == 0 else (even, odd)
-
-
-def at(array: NDArray[Any]) -> ctypes.c_void_p:
-    """Where its first element is."""
-    return ctypes.c_void_p(array.ctypes.data)

@@ -9,12 +9,11 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from tamp_runtime.machine_code import written
+from tamp_runtime.machine_code import address, written
 
 from perception_node.camera import PinholeCamera
 from perception_node.observation import Observation
 
-from .pieces import at
 from .volume import Volume
 
 Array = NDArray[np.float32]
@@ -89,7 +88,10 @@ def _points(camera: PinholeCamera, depth: Array, box: Box, volume: Volume) -> tu
     origin = camera.position_world.astype(np.float32)
     arrays = (depth, across, down, origin, volume.low, volume.high, points, inside)
     library.points(
-        *depth.shape, *map(at, map(np.ascontiguousarray, arrays[:-2])), at(points), at(inside)
+        *depth.shape,
+        *map(address, map(np.ascontiguousarray, arrays[:-2])),
+        address(points),
+        address(inside),
     )
     return points, inside
 

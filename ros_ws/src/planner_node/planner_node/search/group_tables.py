@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
-from tamp_runtime.machine_code import written
+from tamp_runtime.machine_code import address, written
 
 from .patterns import Distances
 
@@ -55,7 +55,7 @@ class GroupTables:
             to = ends[rows, target] - 1 if target > source else ends[rows, target]
             self._turn[rows, source, target] = (ends[rows, source] - 1) * size + to
         self._turned = np.empty((size * size, orders), np.uint16)
-        library().fill_turned(size, orders, at(self._turned))
+        library().fill_turned(size, orders, address(self._turned))
         self._pointers = np.zeros(count, np.uintp)
         self._tables: dict[int, Distances] = {}
         self.bits = (count * orders - 1).bit_length()
@@ -88,7 +88,7 @@ class GroupTables:
         result = np.empty(self.struct.compositions * self.struct.permutations, np.uint8)
         some = np.empty(self.struct.permutations + 1, np.uint16)
         library().fill_distances(
-            ctypes.byref(self.struct), ctypes.c_uint32(pattern), at(result), at(some)
+            ctypes.byref(self.struct), ctypes.c_uint32(pattern), address(result), address(some)
         )
         return result
 
@@ -128,8 +128,3 @@ def library() -> Any:
     if made is None:
         raise RuntimeError("no C compiler; see PartBounds.possible")
     return made
-
-
-def at(array: NDArray[Any]) -> ctypes.c_void_p:
-    """Where an array begins, for C."""
-    return ctypes.c_void_p(array.ctypes.data)

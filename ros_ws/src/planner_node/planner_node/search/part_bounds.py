@@ -16,7 +16,7 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from tamp_runtime.machine_code import written
+from tamp_runtime.machine_code import address, written
 
 from scene_graph import Stacks
 
@@ -27,7 +27,6 @@ from .group_tables import (
     MOST_PLACES,
     GroupTables,
     Patterns,
-    at,
     group_tables,
     library,
 )
@@ -114,7 +113,8 @@ class PartBounds:
         order = np.arange(self._blocks, dtype=np.uint8)
         pointers = (ctypes.c_void_p * len(spaces))(*(ctypes.addressof(s.struct) for s in spaces))
         library().best_split(
-            len(spaces), pointers, self._blocks, at(order), at(self._start), at(self._goal),
+            len(spaces), pointers, self._blocks, address(order), address(self._start),
+            address(self._goal),
             RESTARTS, EXCHANGES,
         )  # fmt: skip
         members = [
@@ -216,7 +216,11 @@ class _Member:
     ) -> None:
         self.space, self.blocks, self.group = space, blocks, _Group()
         self.moves: int = library().set_group(
-            ctypes.byref(space.struct), at(blocks), at(start), at(goal), ctypes.byref(self.group)
+            ctypes.byref(space.struct),
+            address(blocks),
+            address(start),
+            address(goal),
+            ctypes.byref(self.group),
         )
 
 

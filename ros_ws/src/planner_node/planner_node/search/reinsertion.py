@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
-from tamp_runtime.machine_code import written
+from tamp_runtime.machine_code import address, written
 
 from scene_graph import Move, Stacks
 
@@ -77,7 +77,7 @@ def shortened(
     with Going(limits, count=False) as going:
         length = library.shorten(
             room, len(names), len(initial),
-            *(ctypes.c_void_p(array.ctypes.data) for array in (start, goal, plan)),
+            address(start), address(goal), address(plan),
             len(plan), ctypes.c_double(enough),
             ctypes.c_long(work), MOST_OUT, NEAR, round(1000 * WORSE), CHUNK, going.on,
         )  # fmt: skip
