@@ -8,7 +8,7 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from motion_scenes import random_heights, random_moves, scene
 
@@ -54,6 +54,7 @@ def both(request: pytest.FixtureRequest) -> tuple[SqpInC, Sqp]:
 
 @settings(max_examples=100, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), tight=st.floats(0.0, 1.0))
+@example(seed=2239, tight=0.0)  # contradicts itself, and nearly enough a row depends on others
 def test_quadratic_programs_have_one_solution(
     both: tuple[SqpInC, Sqp], seed: int, tight: float
 ) -> None:

@@ -17,7 +17,7 @@
 #define NONE 1e-9
 /* A row whose part beyond the active ones is this share of it depends on them. */
 #define DEPENDENT 1e-10
-/* Equations that depend on others contradict them if they miss more than this [m or rad]. */
+/* Rows that miss more than this when all is done contradict one another [m or rad]. */
 #define CONTRADICTION 1e-6
 /* Of an equation of length 1, what is left beyond others that it depends on. */
 #define NOTHING 1e-7
@@ -419,6 +419,18 @@ static int violated(const Shape *shape, const double *jacobian, const double *lo
     return worst;
 }
 
+/* Whether active rows hold, too: among rows that contradict one another nearly enough rounding can
+ * decide that one does not depend on the others, and what is found then is none. */
+static int active_hold(const Shape *shape, const double *jacobian, const double *lower,
+                       const double *upper, const Active *active, const double *x) {
+    for (int i = 0; i < active->count; ++i) {
+        const int row = active->row[i];
+        const double value = row_times(shape, jacobian, row, x);
+        if (!(fmax(lower[row] - value, value - upper[row]) <= CONTRADICTION)) return 0;
+    }
+    return 1;
+}
+
 /* The minimum x of a gradient at 0. `lower` and `upper` are those of the rows, then of the
  * variables. Returns 0 if the constraints contradict one another. */
 static int quadratic(const Shape *shape, const double *jacobian, const double *gradient,
@@ -430,7 +442,7 @@ static int quadratic(const Shape *shape, const double *jacobian, const double *g
     const int always = active->count;
     for (int turn = 0; turn < 20 * all;) {
         const int row = violated(shape, jacobian, lower, upper, active, x);
-        if (row < 0) return 1;
+        if (row < 0) return active_hold(shape, jacobian, lower, upper, active, x);
         const double value = row_times(shape, jacobian, row, x);
         const double sign = lower[row] > value ? 1.0 : -1.0;
         double missing = sign > 0.0 ? lower[row] - value : value - upper[row];
