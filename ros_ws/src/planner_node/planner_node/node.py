@@ -9,6 +9,7 @@ import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rclpy.action import ActionServer, CancelResponse
@@ -18,6 +19,7 @@ from rclpy.node import Node
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.msg import MotionStatus, SceneGraph
 from tamp_interfaces.srv import PlanToGoal
+from tamp_runtime.machine_code import written_below
 from tamp_runtime.messages.motion_status import report_from_message
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
@@ -112,6 +114,7 @@ class PlannerNode(Node):
     def __init__(self, **kwargs: Any) -> None:
         """Raises ValueError if a parameter is out of range."""
         super().__init__("planner_node", **kwargs)
+        written_below(Path(__file__).parent)  # now, not at the first plan
         self._settings = Settings()
         self._settings.update(declare_parameters(self, PARAMETERS, self._settings.update))
         plans = PlanPublisher(self)
