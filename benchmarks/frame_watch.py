@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import struct
 import threading
 from dataclasses import dataclass, field
@@ -44,7 +45,7 @@ class Frames:
         """
         frames, moving_seconds = [], 0.0
         pictures = sorted((written, stamp) for stamp, written in self.pictures.items())
-        for (written, stamp), (following, _) in zip(pictures, pictures[1:]):
+        for (written, stamp), (following, _) in itertools.pairwise(pictures):
             moving = [executes for since, executes in self.moves if since <= written][-1]
             answered, status, own = self.graphs.get(stamp, (None, None, None))
             seconds = None if answered is None else (answered - written) / 1e9
