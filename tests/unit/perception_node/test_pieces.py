@@ -12,7 +12,7 @@ from perception_scenes import PLACES, looking_camera
 
 from perception_node import alignment
 from perception_node.blocks import evidence
-from perception_node.blocks.quantiles import quantiles
+from perception_node.quantiles import quantiles
 from perception_node.segment import Volume, facets, pieces, region
 from perception_node.segment.facets import Facets, Look
 from perception_node.segment.pieces import Heights

@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
+import cv2
 import torch
 from geometry_msgs.msg import TransformStamped
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
@@ -120,6 +121,7 @@ class PerceptionNode(Node):
         super().__init__("perception_node", **kwargs)
         self._values = declare_parameters(self, PARAMETERS, self._parameters_changed)
         torch.set_num_threads(self._values["threads"])
+        cv2.setNumThreads(self._values["threads"])  # who waits for a thread waits for its core
         written_below(Path(__file__).parent)  # now, not at the first picture
         weights = Path(self._values["weights"] or DEFAULT_WEIGHTS)
         module = load_weights(weights)

@@ -60,7 +60,8 @@ def sight_problem(
         width = 2.0 * config.column_half_width
         part, region = box_part(camera, _box(place, 0.0, (width, width, config.column_height)))
         black = _bare(observation, segments, part) & region
-        black[black] = observation.rgb[part][black].max(axis=1, initial=0) <= BLACK
+        for channel in range(3):
+            black &= observation.rgb[part][..., channel] <= BLACK
         if _share(black, region) > MAX_BLACK:
             bare_too = "" if depth is None else " and has no depth"
             return (

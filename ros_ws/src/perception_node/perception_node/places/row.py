@@ -16,10 +16,10 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linear_sum_assignment
-from scipy.sparse.csgraph import connected_components
 
 from perception_node.camera import PinholeCamera
 from perception_node.clustering import cluster_on_line
+from perception_node.components import components
 from perception_node.errors import BadImageError, PlacesError
 from perception_node.observation import Observation
 from perception_node.segment import Segments
@@ -101,7 +101,7 @@ class RowOfPlaces:
             gaps = np.linalg.norm(feet[:, None, :2] - feet[None, :, :2], axis=-1)
             joined = min(joined, 0.5 * float(gaps[~np.eye(len(feet), dtype=bool)].min()))
         apart = np.linalg.norm(centres_world[:, None, :2] - centres_world[None, :, :2], axis=-1)
-        count, group_of = connected_components(apart < joined, directed=False)
+        count, group_of = components(len(apart), np.argwhere(apart < joined).tolist())
         stacks = []
         for group in range(count):
             members = np.flatnonzero(group_of == group)

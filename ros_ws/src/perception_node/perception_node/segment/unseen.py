@@ -68,6 +68,8 @@ def unseen(region: Region, look: Look, picture_area: int) -> Mask:
         return ~everything
     pixels = np.bincount(ids.ravel(), minlength=count + 1)
     bare = (pixels >= least) & (pixels - without < MIN_DEPTH_SHARE * pixels)
+    if not bare.any():
+        return ~everything
     behind = bare & (pixels > MAX_PART * everything.size)
     for edge in (ids[0], ids[:, 0], ids[:, -1]):
         behind[edge] |= bare[edge]

@@ -8,10 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
 
-
-def quantiles(values: Array, *shares: float) -> list[Any]:
+def quantiles(values: NDArray[np.floating], *shares: float) -> list[Any]:
     """Between neighbours on a straight line, as numpy's are.
 
     Args:
