@@ -101,7 +101,7 @@ class RowOfPlaces:
             gaps = np.linalg.norm(feet[:, None, :2] - feet[None, :, :2], axis=-1)
             joined = min(joined, 0.5 * float(gaps[~np.eye(len(feet), dtype=bool)].min()))
         apart = np.linalg.norm(centres_world[:, None, :2] - centres_world[None, :, :2], axis=-1)
-        count, group_of = components(len(apart), np.argwhere(apart < joined).tolist())
+        count, group_of = components(len(apart), zip(*map(np.ndarray.tolist, np.nonzero(apart < joined))))
         stacks = []
         for group in range(count):
             members = np.flatnonzero(group_of == group)
