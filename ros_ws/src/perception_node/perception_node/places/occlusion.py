@@ -170,6 +170,8 @@ def find_occlusion(
     points = camera.position_world + rays * depth[rows, across, None]
     hidden = np.zeros(depth.shape, bool)
     hides = columns.hidden_by(points, camera)
+    rows, across, points = rows[hides], across[hides], points[hides]
+    hides = np.ones(len(points), bool)
     for block in blocks:
         if block is not None:
             hides &= ~_is_of(block, points)
@@ -195,11 +197,11 @@ def _around(boxes: Sequence[tuple[slice, slice]]) -> tuple[slice, slice]:
 
 def _is_of(block: BlockPose, points_world: Array) -> Mask:
     """Whether points, shape (n, 3) [m], are as near to a block as its rim can be, shape (n,)."""
-    off = points_world - block.position_world
     c, s = np.cos(block.yaw), np.sin(block.yaw)
-    along = np.abs(np.stack([c * off[:, 0] + s * off[:, 1], c * off[:, 1] - s * off[:, 0]], -1))
     half = 0.5 * np.array(block.size) + RIM
-    return (along < half[:2]).all(axis=-1) & (np.abs(off[:, 2]) < half[2])
+    x, y, z = (points_world[:, axis] - at for axis, at in enumerate(block.position_world))
+    beside = (np.abs(c * x + s * y) < half[0]) & (np.abs(c * y - s * x) < half[1])
+    return np.asarray(beside & (np.abs(z) < half[2]))
 
 
 def box_region(camera: PinholeCamera, box: BlockPose) -> Mask:

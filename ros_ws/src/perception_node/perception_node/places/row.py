@@ -101,7 +101,8 @@ class RowOfPlaces:
             gaps = np.linalg.norm(feet[:, None, :2] - feet[None, :, :2], axis=-1)
             joined = min(joined, 0.5 * float(gaps[~np.eye(len(feet), dtype=bool)].min()))
         apart = np.linalg.norm(centres_world[:, None, :2] - centres_world[None, :, :2], axis=-1)
-        count, group_of = components(len(apart), zip(*map(np.ndarray.tolist, np.nonzero(apart < joined))))
+        one, other = np.nonzero(apart < joined)
+        count, group_of = components(len(apart), zip(one.tolist(), other.tolist()))
         stacks = []
         for group in range(count):
             members = np.flatnonzero(group_of == group)
