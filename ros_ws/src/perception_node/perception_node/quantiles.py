@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Quantiles of few values, without what ``numpy.quantile`` spends on every call."""
+"""Quantiles, without what ``numpy.quantile`` spends on every call."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
+
+#: So many values are sorted faster than parted.
+FEW: Final = 256
 
 
 def quantiles(values: NDArray[np.floating], *shares: float) -> list[Any]:
@@ -19,11 +22,16 @@ def quantiles(values: NDArray[np.floating], *shares: float) -> list[Any]:
     Returns:
         For each share, shape (...).
     """
-    ordered, found = np.sort(values, axis=0), []
-    for share in shares:
-        below, part = divmod(share * (len(ordered) - 1), 1.0)
-        low = ordered[int(below)]
-        high = ordered[min(int(below) + 1, len(ordered) - 1)]
+    last = len(values) - 1
+    wanted = [divmod(share * last, 1.0) for share in shares]
+    ends = [(int(below), min(int(below) + 1, last)) for below, _ in wanted]
+    if len(values) > FEW:
+        ordered = np.partition(values, sorted({end for pair in ends for end in pair}), axis=0)
+    else:
+        ordered = np.sort(values, axis=0)
+    found = []
+    for (below, above), (_, part) in zip(ends, wanted):
+        low, high = ordered[below], ordered[above]
         found.append(
             low + part * (high - low) if part < 0.5 else high - (1.0 - part) * (high - low)
         )
