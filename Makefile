@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV := .venv
 RUN := tools/in_workspace
 
-.PHONY: help setup demo test soak-tests lint lint-docker clean lock peers train-visual data-masks train-masks record eval-perception eval-photo fit-probability fit-name-sets eval-visual eval-tasks eval-faults eval-disturbances eval-doubt eval-replay bench-motion bench-obstacles bench-refusals bench-trajectories bench-execution bench-planner bench-stability bench-sim data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
+.PHONY: help setup demo test soak-tests lint lint-docker clean lock peers train-visual data-masks train-masks record eval-perception eval-photo fit-probability fit-name-sets eval-visual eval-tasks eval-faults eval-disturbances eval-doubt eval-replay bench-motion bench-obstacles bench-refusals bench-trajectories bench-execution bench-planner bench-stability bench-sim bench-perception data-latent train-latent eval-latent eval-latent-qa eval-latent-tasks results reference
 
 help:  ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  \1\t/' | expand -t 20
@@ -101,6 +101,9 @@ eval-replay: setup  ## executed tasks once more in MuJoCo; N= BLOCKS= SOURCE=gra
 
 bench-sim: setup  ## time of pictures and of the whole graph, pictures against the physics' rays; QUICK=1
 	@$(RUN) python benchmarks/bench_sim.py
+
+bench-perception: setup  ## from a picture to its graph in the running graph, in real time; N= RESUME=1 QUICK=1
+	@$(RUN) python benchmarks/bench_perception.py $(if $(N),--n $(N)) $(if $(RESUME),--resume) $(ARGS)
 
 bench-motion: setup  ## time to find motions, and how long they take; PEERS=venv with robotic and toppra QUICK=1
 	@$(RUN) python benchmarks/bench_motion.py $(if $(PEERS),--peers "$(PEERS)")

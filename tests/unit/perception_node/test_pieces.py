@@ -12,7 +12,7 @@ from perception_scenes import PLACES, looking_camera
 
 from perception_node import alignment
 from perception_node.blocks import evidence
-from perception_node.blocks.quantiles import quantiles
+from perception_node.quantiles import quantiles
 from perception_node.segment import Volume, facets, pieces, region
 from perception_node.segment.facets import Facets, Look
 from perception_node.segment.pieces import Heights
@@ -155,7 +155,7 @@ def test_ends_of_blocks(picture: Picture, noise: float) -> None:
     same(evidence._ends(*args), evidence.ends_by_numpy(*args))
 
 
-@given(st.integers(1, 50), st.floats(0.0, 1.0), seeds)
+@given(st.integers(1, 600), st.floats(0.0, 1.0), seeds)
 def test_quantiles_are_those_of_numpy(count: int, share: float, seed: int) -> None:
     values = np.random.default_rng(seed).normal(size=(count, 2))
     expected = np.quantile(values, [share, 0.5], axis=0)

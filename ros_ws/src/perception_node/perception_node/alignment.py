@@ -188,7 +188,7 @@ def sharpened(rgb: NDArray[np.uint8], reach: int, noise: float) -> tuple[NDArray
     best = _resembled(rgb, span, at, disk(reach))
     out = rgb.copy()
     out.reshape(-1, 3)[at] = flat[best]
-    change = cv2.absdiff(flat[best], flat[at]).max(axis=1)
+    change = np.maximum.reduce(cv2.split(cv2.absdiff(flat[best], flat[at])[None]))[0]
     return out, float(np.mean(change / span.ravel()[at]))
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,9 +14,12 @@ from .errors import BadImageError
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PinholeCamera:
     """A calibrated camera without distortion. Pixel (u, v) = (column, row), centres at integers.
+
+    One is equal to itself only: what follows from where a camera is, whatever it sees, is kept by
+    it from picture to picture.
 
     Attributes:
         intrinsics: K, shape (3, 3) [px].
@@ -114,8 +118,16 @@ class PinholeCamera:
         Returns:
             Shapes (w, 3) and (h, 3), see :meth:`rays_world`.
         """
-        rows, columns = (np.arange(side.start, side.stop) for side in box)
-        across = self.rays_world(np.stack([columns, np.zeros_like(columns)], axis=-1))
-        down = self.rays_world(np.stack([np.zeros_like(rows), rows], axis=-1))
-        down -= self.rays_world((0.0, 0.0))
-        return across.astype(np.float32), down.astype(np.float32)
+        (first_row, last_row), (first_column, last_column) = ((s.start, s.stop) for s in box)
+        return _rays_apart(self, first_row, last_row, first_column, last_column)
+
+
+@functools.lru_cache(maxsize=16)
+def _rays_apart(
+    camera: PinholeCamera, top: int, bottom: int, left: int, right: int
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    rows, columns = np.arange(top, bottom), np.arange(left, right)
+    across = camera.rays_world(np.stack([columns, np.zeros_like(columns)], axis=-1))
+    down = camera.rays_world(np.stack([np.zeros_like(rows), rows], axis=-1))
+    down -= camera.rays_world((0.0, 0.0))
+    return across.astype(np.float32), down.astype(np.float32)

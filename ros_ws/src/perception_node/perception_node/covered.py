@@ -316,8 +316,9 @@ def _with_slivers(
     rays = camera.rays_world(np.stack([columns, rows], axis=-1))
     points = camera.position_world + rays * depth[rows, columns, None]
     feet = np.array([place.position_world for place in places])
-    off = np.abs(points[:, None, :2] - feet[None, :, :2]).max(axis=-1)
-    over = (off.min(axis=1) < REACH) & (points[:, 2] > feet[:, 2].min() + MIN_HEIGHT)
+    over = points[:, 2] > feet[:, 2].min() + MIN_HEIGHT  # few are
+    off = np.abs(points[over, None, :2] - feet[None, :, :2])
+    over[over] = np.maximum(off[..., 0], off[..., 1]).min(axis=1) < REACH
     strips = np.zeros(depth.shape, np.uint8)
     strips[rows[over], columns[over]] = 1
     count, numbers = cv2.connectedComponents(strips, connectivity=8)

@@ -149,13 +149,15 @@ def color_before(rgb: NDArray[np.uint8], masks: Sequence[NDArray[np.bool_]]) -> 
     """
     if not masks:
         return None
-    free = ~np.logical_or.reduce(masks)
+    taken = np.zeros(rgb.shape[:2], bool)
+    for mask in masks:
+        taken |= mask
     near, far = (round(part * rgb.shape[1]) for part in _BEFORE)
     strips = []
     for mask in masks:
         left, top, width, height = cv2.boundingRect(mask.view(np.uint8))
         strip = np.s_[top + height + near : top + height + far, left : left + width]
-        strips.append(rgb[strip][free[strip]])
+        strips.append(rgb[strip][~taken[strip]])
     pixels = np.concatenate(strips)
     return np.median(pixels, axis=0) / 255.0 if len(pixels) >= _SOME else None
 

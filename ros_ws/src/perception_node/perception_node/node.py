@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
+import cv2
 import torch
 from geometry_msgs.msg import TransformStamped
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
@@ -20,6 +21,7 @@ from std_srvs.srv import Trigger
 from tamp_interfaces.msg import SceneGraph
 from tamp_interfaces.srv import ImageToSceneGraph
 from tamp_runtime.machine_code import written_below
+from tamp_runtime.memory import keep_freed_memory
 from tamp_runtime.messages.images import (
     ImageError,
     color_from_image,
@@ -119,7 +121,9 @@ class PerceptionNode(Node):
         record to cannot be used."""
         super().__init__("perception_node", **kwargs)
         self._values = declare_parameters(self, PARAMETERS, self._parameters_changed)
+        keep_freed_memory()
         torch.set_num_threads(self._values["threads"])
+        cv2.setNumThreads(self._values["threads"])  # who waits for a thread waits for its core
         written_below(Path(__file__).parent)  # now, not at the first picture
         weights = Path(self._values["weights"] or DEFAULT_WEIGHTS)
         module = load_weights(weights)

@@ -109,7 +109,7 @@ PARAMETERS: Final = (
     ParameterSpec(
         "threads",
         1,
-        "processor threads of the visual module",
+        "processor threads of the visual module, and of OpenCV",
         minimum=1,
         maximum=64,
         read_only=True,

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Final
 
 import numpy as np
@@ -59,7 +60,8 @@ def sight_problem(
         width = 2.0 * config.column_half_width
         part, region = box_part(camera, _box(place, 0.0, (width, width, config.column_height)))
         black = _bare(observation, segments, part) & region
-        black[black] = observation.rgb[part][black].max(axis=1, initial=0) <= BLACK
+        for channel in range(3):
+            black &= observation.rgb[part][..., channel] <= BLACK
         if _share(black, region) > MAX_BLACK:
             bare_too = "" if depth is None else " and has no depth"
             return (
@@ -80,6 +82,7 @@ def _box(place: Place, lift: float, size: tuple[float, float, float]) -> BlockPo
     return BlockPose((x, y, z + lift + 0.5 * size[2]), 0.0, size)
 
 
+@functools.lru_cache(maxsize=32)
 def _inside(camera: PinholeCamera, box: BlockPose) -> bool:
     half = 0.5 * np.array(box.size)
     corners = np.array([[i, j, -1.0] for i in (-1.0, 1.0) for j in (-1.0, 1.0)]) * half
@@ -99,10 +102,9 @@ def _is_higher(
     assert observation.depth is not None
     width = 2.0 * config.column_half_width
     ends = _box(place, config.column_height - ABOVE, (width, width, 2.0 * ABOVE))
-    part, region = box_part(camera, ends)
-    rows, columns = pixels_of(region & _known(observation.depth[part]))
-    rows, columns = rows + part[0].start, columns + part[1].start
-    rays = camera.rays_world(np.stack([columns, rows], axis=-1))
+    rows, columns, rays = _rays(camera, ends)
+    known = _known(observation.depth[rows, columns])
+    rows, columns, rays = rows[known], columns[known], rays[known]
     points = camera.position_world + rays * observation.depth[rows, columns, None]
     off = points - place.position_world
     inside = np.abs(off[:, :2]).max(axis=1, initial=0.0) < config.column_half_width
@@ -112,6 +114,17 @@ def _is_higher(
         inside & (higher > -EXACT) & (higher <= EXACT) & (segments.label_image[rows, columns] > 0)
     )
     return min(int(np.count_nonzero(beyond)), int(np.count_nonzero(below))) > STRAY
+
+
+@functools.lru_cache(maxsize=32)
+def _rays(
+    camera: PinholeCamera, box: BlockPose
+) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.float64]]:
+    """Rows, columns and rays of the pixels behind which a box may be, (n,), (n,), (n, 3)."""
+    part, region = box_part(camera, box)
+    rows, columns = pixels_of(region)
+    rows, columns = rows + part[0].start, columns + part[1].start
+    return rows, columns, camera.rays_world(np.stack([columns, rows], axis=-1))
 
 
 def _cut_off(segments: Segments) -> str:

@@ -84,7 +84,10 @@ def written_below(folder: Path) -> None:
 
 def address(array: NDArray[Any]) -> ctypes.c_void_p:
     """Where the values of an array begin, for C; the array lives as long as this does."""
-    return array.ctypes.data_as(ctypes.c_void_p)
+    # What ``array.ctypes.data_as`` does, in a third of the time.
+    pointer: Any = ctypes.c_void_p(array.ctypes.data)
+    pointer.array = array
+    return pointer  # type: ignore[no-any-return]
 
 
 def opened(library: Path | None) -> ctypes.CDLL | None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import faulthandler
+import gc
 import os
 import signal
 import sys
@@ -85,6 +86,9 @@ def run_node(make_node: Callable[[], Node], args: list[str] | None = None, threa
         node = make_node()
         clock = StreamThread.of_clock(node)
         executor.add_node(node)
+        # What a node has once it has started it keeps: a collector that looks through it all again
+        # and again stops every thread for a tenth of a second.
+        gc.freeze()
         interrupts.awaited = False
         if not interrupts.arrived:  # some library may have swallowed the exception
             _spin(executor, node)

@@ -16,9 +16,8 @@ from tamp_runtime.machine_code import address, written
 from perception_node.camera import PinholeCamera
 from perception_node.errors import BadImageError
 from perception_node.masks import pixels_of
+from perception_node.quantiles import quantiles
 from perception_node.segment import Segment, Segments
-
-from .quantiles import quantiles
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from perception_node.camera import PinholeCamera
 from perception_node.errors import BadImageError, UnmeasuredError
+from perception_node.quantiles import quantiles
 from perception_node.segment import Segments
 from scene_graph import BOX, CYLINDER
 
@@ -19,7 +20,6 @@ from .descent import Prior
 from .evidence import Evidence, covering, evidence_of
 from .fit import Fit, fit
 from .models import BallModel, BoxModel, CylinderModel, Model
-from .quantiles import quantiles
 
 Array = NDArray[np.float64]
 
@@ -44,6 +44,9 @@ FLAT_NOISE: Final = 1.6
 TURNS: Final = (-0.08, -0.03, 0.03, 0.08)
 #: Yaws at which a box's faces are looked for [rad].
 YAWS: Final = np.radians(np.arange(-45.0, 45.0, 5.0))
+_C, _S = np.cos(YAWS), np.sin(YAWS)
+#: Normals of two of its faces at each of them, shape (yaws, 2, 2).
+_AXES: Final = np.stack([np.stack([_C, _S], -1), np.stack([-_S, _C], -1)], axis=1)
 #: What is known of a block beforehand, as standard deviations: where it is, how wide, its yaw.
 DOUBT: Final = 0.02
 YAW_DOUBT: Final = 0.5
@@ -212,10 +215,8 @@ def _faces(walls: Array, toward: Array) -> tuple[float, Array]:
 
     The yaw at which the points are nearest to one or the other of two perpendicular lines.
     """
-    c, s = np.cos(YAWS), np.sin(YAWS)
-    axes = np.stack([np.stack([c, s], -1), np.stack([-s, c], -1)], axis=1)
-    sign = np.where(axes @ toward < 0.0, -1.0, 1.0)
-    along = walls @ axes.reshape(-1, 2).T * sign.ravel()
+    sign = np.where(_AXES @ toward < 0.0, -1.0, 1.0)
+    along = walls @ _AXES.reshape(-1, 2).T * sign.ravel()
     front = quantiles(along, 0.9)[0]
     off = np.abs(along - front).reshape(len(walls), len(YAWS), 2)
     off = np.minimum(np.minimum(off[..., 0], off[..., 1]), 0.006)

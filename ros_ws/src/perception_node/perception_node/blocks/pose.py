@@ -87,9 +87,10 @@ class _Estimate:
 
     def condition(self, row: Array, value: float, deviation: float) -> None:
         """Takes in that a sum of parameters was found to be a value."""
-        gain = self.covariance @ row / (row @ self.covariance @ row + deviation**2)
+        across = row @ self.covariance
+        gain = self.covariance @ row / (across @ row + deviation**2)
         self.mean = self.mean + gain * (value - row @ self.mean)
-        self.covariance = self.covariance - np.outer(gain, row @ self.covariance)
+        self.covariance = self.covariance - gain[:, None] * across
 
 
 def pose_blocks(

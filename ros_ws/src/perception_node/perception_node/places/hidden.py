@@ -8,6 +8,7 @@ there is none.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -93,13 +94,9 @@ def cells_over(
     Args:
         half_width, height: of the columns [m].
     """
-    steps = round(half_width / CELL)
-    across = CELL * np.arange(-steps, steps + 1)
-    up = np.arange(0.0, height, CELL)
-    z, y, x = np.meshgrid(up, across, across, indexing="ij")
     depth, camera = observation.depth, observation.camera
     if depth is None or camera is None:
-        free = np.ones(z.shape, bool)
+        free = np.ones(_grid(half_width, height).shape[:-1], bool)
         return tuple(Cells(free, place.position_world[2]) for place in places)
     with np.errstate(invalid="ignore"):
         known = np.isfinite(depth) & (depth > 0.0)
@@ -110,27 +107,45 @@ def cells_over(
     seen[~known & (near_block > 0)] = 0.0
     return tuple(
         Cells(
-            _is_free(np.stack([x, y, z], axis=-1) + place.position_world, seen, camera),
+            _is_free(seen, *_seen_at(camera, place.position_world, half_width, height)),
             place.position_world[2],
         )
         for place in places
     )
 
 
-def _is_free(points: Array, seen: Array, camera: PinholeCamera) -> Mask:
-    """Whether what is seen at points is behind them, shape (..., 3) [m] -> (...).
+def _grid(half_width: float, height: float) -> Array:
+    """The points over a place at the origin, shape (z, y, x, 3) [m]."""
+    steps = round(half_width / CELL)
+    across = CELL * np.arange(-steps, steps + 1)
+    z, y, x = np.meshgrid(np.arange(0.0, height, CELL), across, across, indexing="ij")
+    return np.stack([x, y, z], axis=-1)
 
-    Outside of the picture it is not.
+
+def _is_free(seen: Array, pixels: NDArray[np.int32], depths: Array) -> Mask:
+    """Whether what is seen at points is behind them, see :func:`_seen_at`."""
+    return np.asarray(seen.ravel()[pixels] > depths)
+
+
+@functools.lru_cache(maxsize=16)
+def _seen_at(
+    camera: PinholeCamera, foot: tuple[float, float, float], half_width: float, height: float
+) -> tuple[NDArray[np.int32], Array]:
+    """Where the points over a place are seen; kept, as places stay where they are.
+
+    Returns:
+        Their pixels, as indices of the flattened picture, and which depths there are behind them:
+        those of points outside of the picture are behind nothing, shapes (z, y, x) [m].
     """
-    height, width = seen.shape
+    points = _grid(half_width, height) + foot
     pixels = np.nan_to_num(camera.project(points), nan=-1.0)
     columns, rows = np.rint(pixels).astype(int).transpose(-1, *range(pixels.ndim - 1))
-    inside = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
-    there = np.where(
-        inside, seen[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)], 0.0
-    )
+    inside = (rows >= 0) & (rows < camera.height) & (columns >= 0) & (columns < camera.width)
     far = (points - camera.position_world) @ camera.world_from_optical[:3, 2]
-    return np.asarray(there > far + BEHIND)
+    # Outside of it a depth of 0 counts as seen: in front of all but what is behind the camera.
+    far = np.where(inside | (far + BEHIND < 0.0), far + BEHIND, np.inf)
+    places = np.where(inside, rows * camera.width + columns, 0)
+    return places.astype(np.int32), far
 
 
 def with_clear_heights(places: Sequence[Place], camera: PinholeCamera) -> tuple[Place, ...]:

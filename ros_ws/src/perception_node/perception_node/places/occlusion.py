@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -22,6 +23,8 @@ from .standing import Places
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+#: Rows and columns of a part of a picture, and which of its pixels are meant.
+Part = tuple[tuple[slice, slice], Mask]
 
 #: Things lower than this above the table hide nothing: shadows, the table itself [m].
 MIN_HEIGHT: Final = 0.01
@@ -45,7 +48,7 @@ class Columns:
     half_width: float
     height: float
 
-    def seen_to(self, hidden: Mask, regions: Sequence[Mask], camera: PinholeCamera) -> list[float]:
+    def seen_to(self, hidden: Mask, regions: Sequence[Part], camera: PinholeCamera) -> list[float]:
         """For each column the height over its place up to which nothing hides it [m].
 
         A hidden pixel hides the column at the height at which its ray leaves it at the back, and
@@ -56,12 +59,13 @@ class Columns:
             regions: those of :meth:`regions`.
         """
         heights = []
-        for foot, region in zip(self._feet(), regions):
-            rows, across = pixels_of(hidden & region)
+        for foot, (box, region) in zip(self._feet(), regions):
+            rows, across = pixels_of(hidden[box] & region)
             stray = int(STRAY * np.count_nonzero(region))
             if len(rows) <= stray:
                 heights.append(self.height)
                 continue
+            rows, across = rows + box[0].start, across + box[1].start
             away = foot[:2] - camera.position_world[:2]
             distance = float(np.hypot(*away))
             rays = camera.rays_world(np.stack([across, rows], axis=-1))
@@ -71,12 +75,12 @@ class Columns:
             heights.append(float(np.clip(np.partition(z, stray)[stray], 0.0, self.height)))
         return heights
 
-    def regions(self, camera: PinholeCamera) -> list[Mask]:
-        """For each column the pixels behind which it may be, shape (height, width)."""
+    def regions(self, camera: PinholeCamera) -> list[Part]:
+        """For each column the pixels behind which it may be."""
         size = (2.0 * self.half_width, 2.0 * self.half_width, self.height)
         return [
-            box_region(camera, BlockPose((x, y, z + 0.5 * self.height), 0.0, size))
-            for x, y, z in self._feet()
+            box_part(camera, BlockPose((x, y, z + 0.5 * self.height), 0.0, size))
+            for x, y, z in (place.position_world for place in self.places.places)
         ]
 
     def greatest_depth(self, camera: PinholeCamera) -> float:
@@ -154,14 +158,20 @@ def find_occlusion(
         assert segments.hides is not None
         return _occlusion(segments.hides, columns, regions, camera)
     # What is deeper than every column is behind them: most of the image, without any geometry.
+    behind = np.zeros(depth.shape, bool)
+    for box, region in regions:
+        behind[box] |= region
+    part = _around([box for box, _ in regions])
     with np.errstate(invalid="ignore"):
-        near = (depth > 0) & (depth < columns.greatest_depth(camera))
-    unlabelled = segments.label_image == 0
-    rows, across = pixels_of(np.logical_or.reduce(regions) & unlabelled & near)
+        near = (depth[part] > 0) & (depth[part] < columns.greatest_depth(camera))
+    rows, across = pixels_of(behind[part] & (segments.label_image[part] == 0) & near)
+    rows, across = rows + part[0].start, across + part[1].start
     rays = camera.rays_world(np.stack([across, rows], axis=-1))
     points = camera.position_world + rays * depth[rows, across, None]
     hidden = np.zeros(depth.shape, bool)
     hides = columns.hidden_by(points, camera)
+    rows, across, points = rows[hides], across[hides], points[hides]
+    hides = np.ones(len(points), bool)
     for block in blocks:
         if block is not None:
             hides &= ~_is_of(block, points)
@@ -170,19 +180,28 @@ def find_occlusion(
 
 
 def _occlusion(
-    hidden: Mask, columns: Columns, regions: Sequence[Mask], camera: PinholeCamera
+    hidden: Mask, columns: Columns, regions: Sequence[Part], camera: PinholeCamera
 ) -> Occlusion:
-    shares = tuple(_share(hidden, region) for region in regions)
+    shares = tuple(_share(hidden[box], region) for box, region in regions)
     return Occlusion(hidden, shares, tuple(columns.seen_to(hidden, regions, camera)))
+
+
+def _around(boxes: Sequence[tuple[slice, slice]]) -> tuple[slice, slice]:
+    """Rows and columns that hold all of some others, at least one."""
+    rows, columns = (
+        slice(min(side.start for side in sides), max(side.stop for side in sides))
+        for sides in zip(*boxes)
+    )
+    return rows, columns
 
 
 def _is_of(block: BlockPose, points_world: Array) -> Mask:
     """Whether points, shape (n, 3) [m], are as near to a block as its rim can be, shape (n,)."""
-    off = points_world - block.position_world
     c, s = np.cos(block.yaw), np.sin(block.yaw)
-    along = np.abs(np.stack([c * off[:, 0] + s * off[:, 1], c * off[:, 1] - s * off[:, 0]], -1))
     half = 0.5 * np.array(block.size) + RIM
-    return (along < half[:2]).all(axis=-1) & (np.abs(off[:, 2]) < half[2])
+    x, y, z = (points_world[:, axis] - at for axis, at in enumerate(block.position_world))
+    beside = (np.abs(c * x + s * y) < half[0]) & (np.abs(c * y - s * x) < half[1])
+    return np.asarray(beside & (np.abs(z) < half[2]))
 
 
 def box_region(camera: PinholeCamera, box: BlockPose) -> Mask:
@@ -197,8 +216,12 @@ def box_region(camera: PinholeCamera, box: BlockPose) -> Mask:
     return whole
 
 
-def box_part(camera: PinholeCamera, box: BlockPose) -> tuple[tuple[slice, slice], Mask]:
-    """The rows and columns of the picture in which those pixels are, and which of them they are."""
+@functools.lru_cache(maxsize=128)
+def box_part(camera: PinholeCamera, box: BlockPose) -> Part:
+    """The rows and columns of the picture in which those pixels are, and which of them they are.
+
+    Kept, as places stay where they are.
+    """
     corners = np.array([[i, j, k] for i in (-0.5, 0.5) for j in (-0.5, 0.5) for k in (-0.5, 0.5)])
     corners = corners * box.size
     c, s = np.cos(box.yaw), np.sin(box.yaw)
@@ -213,6 +236,7 @@ def box_part(camera: PinholeCamera, box: BlockPose) -> tuple[tuple[slice, slice]
     region = np.zeros((bottom - top, right - left), np.uint8)
     if region.size:
         cv2.fillConvexPoly(region, hull - (left, top), 1)
+    region.setflags(write=False)
     return np.s_[top:bottom, left:right], region.view(bool)
 
 

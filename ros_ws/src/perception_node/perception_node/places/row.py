@@ -8,6 +8,7 @@ can be counted on the outline of the masks, grouped by horizontal coordinate, an
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from typing import Final
 
@@ -15,10 +16,10 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linear_sum_assignment
-from scipy.sparse.csgraph import connected_components
 
 from perception_node.camera import PinholeCamera
 from perception_node.clustering import cluster_on_line
+from perception_node.components import components
 from perception_node.errors import BadImageError, PlacesError
 from perception_node.observation import Observation
 from perception_node.segment import Segments
@@ -54,14 +55,7 @@ class RowOfPlaces:
 
     def seen_by(self, camera: PinholeCamera | None) -> Places:
         """The same places in two rows, where they lie so for a camera."""
-        from .two_rows import TwoRows  # which is a row of places itself
-
-        if camera is None:
-            return self
-        places = in_rows(self.positions, _point(camera))
-        if not any(place.row for place in places):
-            return self
-        return TwoRows(with_clear_heights(places, camera))
+        return self if camera is None else _seen_by(self, camera)
 
     @property
     def positions(self) -> Points:
@@ -107,7 +101,8 @@ class RowOfPlaces:
             gaps = np.linalg.norm(feet[:, None, :2] - feet[None, :, :2], axis=-1)
             joined = min(joined, 0.5 * float(gaps[~np.eye(len(feet), dtype=bool)].min()))
         apart = np.linalg.norm(centres_world[:, None, :2] - centres_world[None, :, :2], axis=-1)
-        count, group_of = connected_components(apart < joined, directed=False)
+        one, other = np.nonzero(apart < joined)
+        count, group_of = components(len(apart), zip(one.tolist(), other.tolist()))
         stacks = []
         for group in range(count):
             members = np.flatnonzero(group_of == group)
@@ -184,6 +179,16 @@ class RowOfPlaces:
     def _without_places(self, stacks: tuple[tuple[int, ...], ...], problem: str = "") -> Standing:
         height = self.places[0].position_world[2] if self.places else 0.0
         return Standing(stacks, (height,) * len(stacks), problem=problem)
+
+
+@functools.lru_cache(maxsize=4)
+def _seen_by(row: RowOfPlaces, camera: PinholeCamera) -> Places:
+    from .two_rows import TwoRows  # which is a row of places itself
+
+    places = in_rows(row.positions, _point(camera))
+    if not any(place.row for place in places):
+        return row
+    return TwoRows(with_clear_heights(places, camera))
 
 
 def _point(camera: PinholeCamera) -> tuple[float, float, float]:

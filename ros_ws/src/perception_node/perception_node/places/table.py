@@ -3,15 +3,18 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from perception_node.camera import PinholeCamera
 from perception_node.masks import pixels_of
 from perception_node.observation import Observation
 from perception_node.segment import Segments
 
-from .standing import Places
+from .standing import Places, Points
 
 #: The table around the places is looked at as far as this from the outer ones [m].
 MARGIN: Final = 0.12
@@ -33,23 +36,15 @@ def table_problem(observation: Observation, segments: Segments, places: Places) 
     depth, camera = observation.depth, observation.camera
     if depth is None or camera is None or not places.places:
         return ""
-    feet = np.array([place.position_world for place in places.places])
-    height = float(np.median(feet[:, 2]))
+    positions = tuple(place.position_world for place in places.places)
+    height = _height(positions)
     step = max(1, round((depth.size / LOOKED_AT) ** 0.5))
-    some = depth[::step, ::step]
-    known = (segments.label_image[::step, ::step] == 0) & np.isfinite(some) & (some > 0.0)
-    rows, columns = pixels_of(known)
-    rows, columns = step * rows, step * columns
-    rays = camera.rays_world(np.stack([columns, rows], axis=-1))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        reach = (height - camera.position_world[2]) / rays[:, 2]
-    hits = camera.position_world + rays * reach[:, None]
-    low, high = feet[:, :2].min(axis=0) - MARGIN, feet[:, :2].max(axis=0) + MARGIN
-    inside = (reach > 0.0) & ((hits[:, :2] > low) & (hits[:, :2] < high)).all(axis=1)
-    if np.count_nonzero(inside) < MIN_PIXELS:
+    rows, columns, down = _on_table(camera, positions, step)
+    measured = depth[rows, columns]
+    known = (segments.label_image[rows, columns] == 0) & np.isfinite(measured) & (measured > 0.0)
+    if np.count_nonzero(known) < MIN_PIXELS:
         return ""
-    measured = depth[rows[inside], columns[inside]]
-    offsets = camera.position_world[2] + rays[inside, 2] * measured - height
+    offsets = camera.position_world[2] + down[known] * measured[known] - height
     first, middle, last = np.percentile(offsets, [25, 50, 75])
     if abs(middle) <= MAX_OFFSET or last - first > MAX_SPREAD:
         return ""
@@ -58,3 +53,29 @@ def table_problem(observation: Observation, segments: Segments, places: Places) 
         f"what should be the table is measured {1000 * abs(middle):.0f} mm {side} it; check the "
         "depth camera, camera/extrinsics (the calibration), and the height of the places"
     )
+
+
+@functools.lru_cache(maxsize=4)
+def _on_table(
+    camera: PinholeCamera, places: Points, step: int
+) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.float64]]:
+    """Pixels that show the table around the places, if nothing is on it, on a grid of ``step``.
+
+    Returns:
+        Their rows and columns, and z of their rays, shape (n,) each.
+    """
+    feet = np.array(places)
+    grid = np.ones((-(-camera.height // step), -(-camera.width // step)), bool)
+    rows, columns = (step * index for index in pixels_of(grid))
+    rays = camera.rays_world(np.stack([columns, rows], axis=-1))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        reach = (_height(places) - camera.position_world[2]) / rays[:, 2]
+        hits = camera.position_world + rays * reach[:, None]
+    low, high = feet[:, :2].min(axis=0) - MARGIN, feet[:, :2].max(axis=0) + MARGIN
+    inside = (reach > 0.0) & ((hits[:, :2] > low) & (hits[:, :2] < high)).all(axis=1)
+    return rows[inside], columns[inside], rays[inside, 2]
+
+
+def _height(places: Points) -> float:
+    """Of the table [m]."""
+    return float(np.median([z for _, _, z in places]))

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception_node.errors import BadImageError
+from perception_node.quantiles import quantiles
 
 from .segments import Mask, Segments
 
@@ -18,8 +19,8 @@ from .segments import Mask, Segments
 MAX_OTHERS: Final = 0.4
 #: What is nearer to the camera than nearly all of a block by more than this is before it [m].
 BEFORE: Final = 0.005
-#: Percentage of a block's pixels that may be nearer still.
-NEAREST: Final = 10
+#: Share of a block's pixels that may be nearer still.
+NEAREST: Final = 0.1
 #: Greatest range of most of a block's chromaticities (share of a channel in the sum of the three).
 #: One colour has 0.01, with grain of 20 grey levels up to 0.2 where it is dark; noise has 0.3.
 MAX_COLOR_RANGE: Final = 0.23
@@ -84,7 +85,7 @@ def _stands_before(depth: NDArray[np.floating], of_block: NDArray[np.floating]) 
         known = of_block[of_block > 0.0]
         if not known.size:
             return np.zeros(depth.shape, bool)
-        return (depth > 0.0) & (depth < np.percentile(known, NEAREST) - BEFORE)
+        return (depth > 0.0) & (depth < quantiles(known, NEAREST)[0] - BEFORE)
 
 
 def _outline(part: Mask) -> Mask:
@@ -111,8 +112,8 @@ def _edge_share(rgb: NDArray[np.uint8], outline: Mask, unlabelled: Mask) -> floa
         lower = (slice(None),) * axis + (slice(None, -EDGE_WIDTH),)
         upper = (slice(None),) * axis + (slice(EDGE_WIDTH, None),)
         crossing = (outline[lower] & outside[upper]) | (outside[lower] & outline[upper])
-        contrast = np.abs(colors[lower][crossing] - colors[upper][crossing]).max(1, initial=0)
-        changes += int(np.count_nonzero(contrast > EDGE_CONTRAST))
+        contrast = np.abs(colors[lower][crossing] - colors[upper][crossing]) > EDGE_CONTRAST
+        changes += int(np.count_nonzero(contrast[:, 0] | contrast[:, 1] | contrast[:, 2]))
         total += len(contrast)
     return changes / total if total else 1.0
 

@@ -14,10 +14,9 @@ from typing import Final
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from perception_node.alignment import smear_of
+from perception_node.components import components
 from perception_node.errors import BadImageError
 from perception_node.masks import pixels_of
 from perception_node.observation import Observation
@@ -274,7 +273,8 @@ def _group(facets: Facets, table: _Table) -> NDArray[np.intp]:
     first, second, length = facets.borders.T
     large = table.thick & (table.pixels >= SLIVER)
     same = large[first] & large[second] & (length >= 2) & _can_be_one_block(table, first, second)
-    groups = _joined(facets.count, first[same], second[same])
+    pairs = zip(first[same].tolist(), second[same].tolist())
+    _, groups = components(facets.count + 1, pairs)
     # Small ones belong to the large neighbour that they look like most, those that have none to
     # that of a small neighbour.
     difference = np.linalg.norm(table.chroma[first] - table.chroma[second], axis=1)
@@ -300,11 +300,6 @@ def _as_high(table: _Table, large: Mask, a: NDArray[np.int64], b: NDArray[np.int
     above = table.low[small, 2] > table.low[other, 2] - LEAK
     below = table.high[small, 2] < table.high[other, 2] + LEAK
     return np.asarray((above & below) | (large[a] == large[b]))
-
-
-def _joined(count: int, first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.intp]:
-    links = coo_array((np.ones(len(first)), (first, second)), shape=(count + 1, count + 1))
-    return np.asarray(connected_components(links, directed=False)[1], dtype=np.intp)
 
 
 def _can_be_one_block(table: _Table, a: NDArray[np.int64], b: NDArray[np.int64]) -> Mask:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from perception_node.errors import BadImageError
 from perception_node.masks import pixels_of
@@ -68,15 +69,23 @@ def unseen(region: Region, look: Look, picture_area: int) -> Mask:
         return ~everything
     pixels = np.bincount(ids.ravel(), minlength=count + 1)
     bare = (pixels >= least) & (pixels - without < MIN_DEPTH_SHARE * pixels)
+    if not bare.any():
+        return ~everything
     behind = bare & (pixels > MAX_PART * everything.size)
     for edge in (ids[0], ids[:, 0], ids[:, -1]):
         behind[edge] |= bare[edge]
-    for facet in np.flatnonzero(bare & ~behind):
-        mine = ids == facet
-        for other in np.flatnonzero(behind):
-            theirs = ids == other
-            hue = look.chroma[mine].mean(axis=0) - look.chroma[theirs].mean(axis=0)
-            light = look.light[mine].mean() - look.light[theirs].mean()
-            if np.linalg.norm(hue) < SAME_HUE and abs(light) < SAME_LIGHT:
-                bare[facet] = False
+    doubtful = np.flatnonzero(bare & ~behind)
+    if not len(doubtful):
+        return ~everything
+
+    def means(facets: NDArray[np.intp]) -> list[tuple[NDArray[np.float32], np.float32]]:
+        masks = (ids == facet for facet in facets)
+        return [(look.chroma[mask].mean(axis=0), look.light[mask].mean()) for mask in masks]
+
+    known = means(np.flatnonzero(behind))
+    for facet, (hue, light) in zip(doubtful, means(doubtful)):
+        bare[facet] = not any(
+            np.linalg.norm(hue - other) < SAME_HUE and abs(light - lit) < SAME_LIGHT
+            for other, lit in known
+        )
     return np.asarray((bare & ~behind)[ids])

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -23,9 +24,11 @@ FALLEN: Final = 0.21
 LYING: Final = 0.09
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Volume:
     """An upright box in world, its floor on the table, and the row of places in it.
+
+    One is equal to itself only, so that what is seen of it is kept by it.
 
     Attributes:
         low, high: opposite corners, shape (3,) [m].
@@ -70,17 +73,7 @@ class Volume:
 
     def before(self, camera: PinholeCamera) -> Volume:
         """What is on the table beyond it on the camera's side, where no block of the row is."""
-        toward = camera.position_world[:2] - self.feet.mean(axis=0)
-        axis = int(np.argmax(np.abs(toward)))
-        low, high = self.low.copy(), self.high.copy()
-        high[2] = self.floor + LYING
-        if toward[axis] > 0.0:
-            edge = self.feet[:, axis].max()
-            low[axis], high[axis] = edge + NEAR, edge + FALLEN
-        else:
-            edge = self.feet[:, axis].min()
-            low[axis], high[axis] = edge - FALLEN, edge - NEAR
-        return replace(self, low=low, high=high, near=FALLEN)
+        return _before(self, camera)
 
     def corners(self) -> Array:
         """All eight, shape (8, 3) [m]."""
@@ -89,12 +82,32 @@ class Volume:
 
     def seen_by(self, camera: PinholeCamera) -> tuple[slice, slice] | None:
         """Rows and columns of the part of a picture that shows it; None if none does."""
-        pixels = camera.project(self.corners())
-        if not np.isfinite(pixels).all():  # the camera is in the volume: all of it may be seen
-            pixels = np.array([[0, 0], [camera.width - 1, camera.height - 1]], dtype=np.float64)
-        size = (camera.width, camera.height)
-        first = np.clip(np.floor(pixels.min(axis=0)).astype(int), 0, size)
-        last = np.clip(np.ceil(pixels.max(axis=0)).astype(int) + 1, 0, size)
-        if (last - first).min() < 3:
-            return None
-        return slice(int(first[1]), int(last[1])), slice(int(first[0]), int(last[0]))
+        return _seen_by(self, camera)
+
+
+@functools.lru_cache(maxsize=8)
+def _before(volume: Volume, camera: PinholeCamera) -> Volume:
+    toward = camera.position_world[:2] - volume.feet.mean(axis=0)
+    axis = int(np.argmax(np.abs(toward)))
+    low, high = volume.low.copy(), volume.high.copy()
+    high[2] = volume.floor + LYING
+    if toward[axis] > 0.0:
+        edge = volume.feet[:, axis].max()
+        low[axis], high[axis] = edge + NEAR, edge + FALLEN
+    else:
+        edge = volume.feet[:, axis].min()
+        low[axis], high[axis] = edge - FALLEN, edge - NEAR
+    return replace(volume, low=low, high=high, near=FALLEN)
+
+
+@functools.lru_cache(maxsize=16)
+def _seen_by(volume: Volume, camera: PinholeCamera) -> tuple[slice, slice] | None:
+    pixels = camera.project(volume.corners())
+    if not np.isfinite(pixels).all():  # the camera is in the volume: all of it may be seen
+        pixels = np.array([[0, 0], [camera.width - 1, camera.height - 1]], dtype=np.float64)
+    size = (camera.width, camera.height)
+    first = np.clip(np.floor(pixels.min(axis=0)).astype(int), 0, size)
+    last = np.clip(np.ceil(pixels.max(axis=0)).astype(int) + 1, 0, size)
+    if (last - first).min() < 3:
+        return None
+    return slice(int(first[1]), int(last[1])), slice(int(first[0]), int(last[0]))

@@ -91,7 +91,8 @@ def translated_overlap(
     for index, (seen, crop) in enumerate(zip(coverage, default)):
         (width, height), (right, up) = crop_sizes[index], moves[index]
         size = len(seen)
-        part = np.pad(crop[size - height :, :width].astype(np.float64), 1)
+        part = np.zeros((height + 2, width + 2))
+        part[1:-1, 1:-1] = crop[size - height :, :width]
         whole_right, whole_up = math.floor(right), math.floor(up)
         right, up = right - whole_right, up - whole_up
         # Bilinear: each pixel is shared by four, of which the last rows and columns are zero.

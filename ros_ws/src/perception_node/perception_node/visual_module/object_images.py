@@ -73,7 +73,8 @@ def object_images(
     rgb = _whole_blocks(rgb, source)
     images = np.zeros((count, 3, size, size), np.float32)
     coverage = np.zeros((count, size, size), np.float32)
-    default_images, default_coverage = np.zeros_like(images), np.zeros_like(coverage)
+    default_images = np.zeros(images.shape, np.float32)
+    default_coverage = np.zeros(coverage.shape, np.float32)
     crop_sizes = np.zeros((count, 2), np.intp)
     for index, segment in enumerate(segments):
         mask = _whole_blocks(segment.mask, source)
@@ -121,7 +122,8 @@ def object_views(
     count, longer = len(segments), max(rgb.shape[:2])
     images = np.zeros((count, 3, size, size), np.float32)
     coverage = np.zeros((count, size, size), np.float32)
-    default_images, default_coverage = np.zeros_like(images), np.zeros_like(coverage)
+    default_images = np.zeros(images.shape, np.float32)
+    default_coverage = np.zeros(coverage.shape, np.float32)
     crop_sizes, origins = np.zeros((count, 2), np.intp), np.zeros((count, 2))
     sides = np.zeros(count)
     for index, segment in enumerate(segments):
