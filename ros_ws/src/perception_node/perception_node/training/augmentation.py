@@ -17,6 +17,9 @@ from .dataset import CROP_SIZE
 
 #: No object is made narrower or lower than this [px].
 MIN_SIDE: Final = 5
+#: Of how long the longer side of an object in a view of one scale is to be, the visible part of a
+#: damaged one included.
+ABOUT: Final = (0.75, 1.4)
 #: Sine of the greatest angle at which a block that is turned is looked down on, and how bright the
 #: darker one of its two sides is at least.
 STEEPEST: Final = 0.7
@@ -40,20 +43,33 @@ def recolored(pixels: Tensor, generator: torch.Generator) -> Tensor:
 
 
 def stretched(
-    pixels: Tensor, sizes: Tensor, factor: float, generator: torch.Generator
+    pixels: Tensor,
+    sizes: Tensor,
+    factor: float,
+    generator: torch.Generator,
+    side: int | None = None,
 ) -> tuple[Tensor, Tensor]:
     """Crops made wider or narrower, and higher or lower, as blocks of other shapes would be.
 
     Args:
         pixels: in 0..1, shape (n, channels, CROP_SIZE, CROP_SIZE), object at the bottom left.
         sizes: width and height of the objects [px], shape (n, 2).
-        factor: both are divided or multiplied by up to this, each by itself.
+        factor: by up to which width and height differ; without ``side`` both are divided by up to
+            it, and multiplied by up to its root, each by itself.
+        side: about how long the longer one becomes, as in views of one scale [px].
 
     Returns:
         Pixels and sizes.
     """
-    drawn = factor ** (2.0 * torch.rand(sizes.shape, generator=generator) - 1.0)
-    wanted = (sizes * drawn).round().clamp(MIN_SIDE, CROP_SIZE).long()
+    if side is None:
+        low, high = -math.log(factor), 0.5 * math.log(factor)
+        drawn = sizes * torch.exp(low + (high - low) * torch.rand(sizes.shape, generator=generator))
+    else:
+        ratio = factor ** (2.0 * torch.rand(len(sizes), generator=generator) - 1.0)
+        low, high = ABOUT
+        longer = side * (low + (high - low) * torch.rand(len(sizes), generator=generator))
+        drawn = longer[:, None] * torch.stack([ratio, 1.0 / ratio], 1).clamp(max=1.0)
+    wanted = drawn.round().clamp(MIN_SIDE, CROP_SIZE).long()
     ratio = sizes / wanted
     steps = torch.arange(CROP_SIZE) + 0.5
     # Where each pixel comes from, in 0..CROP_SIZE from the left and from the bottom.

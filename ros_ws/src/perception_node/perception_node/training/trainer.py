@@ -12,7 +12,7 @@ from torch import Tensor
 
 from perception_node.visual_module.coordinate_regressor import DEFAULT_BACKBONE
 from perception_node.visual_module.grid_sampler import sample
-from perception_node.visual_module.object_images import IMAGE_SIZE
+from perception_node.visual_module.object_images import BLOCK_SIDE, IMAGE_SIZE
 from perception_node.visual_module.visual_module import TRANSLATION_FACTOR, VisualModule
 from perception_node.visual_module.weights import read_weights
 
@@ -36,7 +36,8 @@ class TrainingConfig:
         shift_share: share of objects that are put anywhere in the image; the others are shifted
             together with their scene.
         damage_share: share of inputs hit by each kind of damage; targets are never damaged.
-        stretch: objects are made narrower or wider, and lower or higher, by up to this factor.
+        stretch: by up to this factor width and height of objects are made to differ; what looks at
+            them in one scale gets them in about that one, others smaller or larger.
         turn_share: share of objects that are cut as if they were turned.
         bfloat16: autocast of the regressor; faster only where the processor has AMX.
         checkpoint_every: steps between checkpoints.
@@ -135,7 +136,8 @@ class Trainer(TrainingRun[float]):
         picked = full[torch.randint(0, len(full), (config.batch_scenes,), generator=rng)]
         index = (starts[picked, None] + torch.arange(objects)).flatten()
         pixels = recolored(self.crops.pixels[index].float() / 255.0, rng)
-        pixels, sizes = stretched(pixels, self.crops.sizes[index], config.stretch, rng)
+        side = BLOCK_SIDE if config.backbone == DEFAULT_BACKBONE else None
+        pixels, sizes = stretched(pixels, self.crops.sizes[index], config.stretch, rng, side)
         pixels = turned(pixels, sizes, config.turn_share, rng)
         corners = self.crops.corners[index]
         corners = _shifted(corners, sizes, objects, config.shift_share, rng)
