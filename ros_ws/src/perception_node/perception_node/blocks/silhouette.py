@@ -50,6 +50,9 @@ CUBE: Final = 0.02
 #: cubes, as a root mean square, are theirs [m].
 EQUAL: Final = 0.0005
 CUBES_FIT: Final = 0.0016
+#: Blocks of one width that fit are not believed where one of them is further from where it is
+#: expected than by so many standard deviations: another width looks the same from nearer by.
+ASTRAY: Final = 1.25
 #: Those of other boxes have to be nearer by this.
 BETTER: Final = 0.7
 #: Yaws at which the fit begins [rad].
@@ -165,14 +168,24 @@ class _Fit:
         """Parameters of all blocks, shape (N, 6); covariance; misfits, shape (N,) [m]."""
         start = self._start()
         fits = [self._fitted(start, EQUAL, EQUAL, alike=True)]
-        if fits[0][2].max() > CUBES_FIT:
+        astray = self._astray(fits[0][0])
+        if fits[0][2].max() > CUBES_FIT or astray > ASTRAY:
             start = self._turned(start)
             fits.append(self._fitted(start, EQUAL, EQUAL))
+            if fits[0][2].max() <= CUBES_FIT and self._astray(fits[1][0]) >= astray:
+                return fits[0]
         if fits[-1][2].max() > CUBES_FIT:
             others = self._fitted(start, SQUARE, CUBE)
             if others[2].max() < BETTER * fits[-1][2].max():
                 fits.append(others)
         return fits[-1]
+
+    def _astray(self, values: Array) -> float:
+        """How far a block is at most from its place or the one below it [standard deviations]."""
+        on_block = self.below >= 0
+        under = np.where(on_block[:, None], values[self.below, :2], self.foot[:, :2])
+        off = np.linalg.norm(values[:, :2] - under, axis=1)
+        return float((off / np.where(on_block, ON_BLOCK, ON_PLACE)).max())
 
     def surfaces(self, found: Fitted, rivals: Sequence[str]) -> tuple[BlockSurface, ...]:
         """What was found, in the order of the segments."""
