@@ -54,6 +54,13 @@ def test_cubes_of_many_sizes_turned_anyhow() -> None:
         assert_is(surface, solid)
 
 
+@pytest.mark.parametrize("edges", [(0.031, 0.039), (0.045, 0.052)])
+def test_a_larger_cube_is_not_taken_for_an_equal_one_nearer_by(edges: tuple[float, float]) -> None:
+    solids = piled(0, [(edge,) * 3 for edge in edges], [0.2, -0.3])
+    for surface, solid in zip(measured(solids), solids):
+        assert_is(surface, solid)
+
+
 def test_what_lies_on_an_edge_and_what_is_in_the_air_are_no_upright_blocks() -> None:
     lying = Solid("box", (0.5, 0.0, 0.02), (0.02, 0.09, 0.02), 0.0)
     floating = Solid("box", (0.5, 0.15, 0.12), 0.0225)
