@@ -21,10 +21,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception_node.camera import PinholeCamera
+from perception_node.errors import BadImageError
 from perception_node.segment import Segments
+from perception_node.segment.missed import missed_sentence
 from scene_graph import BOX, SPHERE
 
-from .behind import seen_behind
+from .behind import seen_behind, top_is_seen
 from .measure import BlockSurface
 from .outline import shape_from_outline
 from .reach import DIRECTIONS, Reach, points_around, reach_of, towers_over
@@ -86,7 +88,8 @@ def measure_silhouettes(
         feet: of the places, at least one, shape (m, 3) [m].
 
     Raises:
-        BadImageError: if a block is not over a place; the sentence names its label.
+        BadImageError: if a block is not over a place; if there may be one that was not found, on
+            one whose top is not seen whole.
     """
     outlines = [points_around(segment.part, segment.outline) for segment in segments]
     towers = towers_over(outlines, camera, feet)
@@ -107,6 +110,9 @@ def measure_silhouettes(
         if fit.shapes != shapes:
             fit = _Fit(towers, shapes, reach, outlines, camera, feet)
             found = fit.best()
+    for index, segment in enumerate(segments):
+        if segment.over is not None and not fit.top_is_seen(found, index):
+            raise BadImageError(missed_sentence(*segment.over))
     return fit.surfaces(found, rivals)
 
 
@@ -179,6 +185,13 @@ class _Fit:
             if others[2].max() < BETTER * fits[-1][2].max():
                 fits.append(others)
         return fits[-1]
+
+    def top_is_seen(self, found: Fitted, index: int) -> bool:
+        """Whether nothing can stand on a block."""
+        return top_is_seen(
+            self._with_low(found[0])[index], self.shapes[index], self.outlines[index],
+            float(self.reach.scale[index]), self.camera,
+        )  # fmt: skip
 
     def _astray(self, values: Array) -> float:
         """How far a block is at most from its place or the one below it [standard deviations]."""
