@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from perception_scenes import PLACES, Solid, cast, looking_camera, piled, tower
@@ -52,6 +54,29 @@ def test_cubes_of_many_sizes_turned_anyhow() -> None:
     ]
     for surface, solid in zip(measured(solids), solids):
         assert_is(surface, solid)
+
+
+@pytest.mark.parametrize("edges", [(0.031, 0.039), (0.045, 0.052)])
+def test_a_larger_cube_is_not_taken_for_an_equal_one_nearer_by(edges: tuple[float, float]) -> None:
+    solids = piled(0, [(edge,) * 3 for edge in edges], [0.2, -0.3])
+    for surface, solid in zip(measured(solids), solids):
+        assert_is(surface, solid)
+
+
+@pytest.mark.parametrize("edge", [0.03, 0.045])
+def test_doubt_whether_a_block_was_missed_is_settled_by_the_top_below_it(edge: float) -> None:
+    low, high = piled(0, [(edge,) * 3] * 2, [0.3, -0.2])
+    for solids in ([low], [low, high]):
+        _, labels = cast(solids, CAMERA)
+        labels[labels > 1] = 0  # the upper one is missed
+        found = Segments.from_labels(labels, hides=np.zeros(labels.shape, bool))
+        segments = replace(found, blocks=(replace(found.blocks[0], over=(12.0, 34.0)),))
+        rgb = np.full((*labels.shape, 3), 120, np.uint8)
+        if len(solids) == 1:
+            assert_is(measure_silhouettes(rgb, segments, CAMERA, FEET)[0], low)
+        else:
+            with pytest.raises(BadImageError, match=r"pixel \(12, 34\) may be a block on a tower"):
+                measure_silhouettes(rgb, segments, CAMERA, FEET)
 
 
 def test_what_lies_on_an_edge_and_what_is_in_the_air_are_no_upright_blocks() -> None:

@@ -4,6 +4,7 @@
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,11 +13,12 @@ import torch
 
 from perception_node.errors import DatasetError, WeightsError
 from perception_node.segment import Segments
+from perception_node.training.augmentation import stretched, turned
 from perception_node.training.dataset import place_crops, read_crops, read_scenes
 from perception_node.training.train_visual import main
 from perception_node.training.trainer import Trainer, TrainingConfig
-from perception_node.visual_module.object_images import object_images
-from perception_node.visual_module.weights import load_weights, read_metadata
+from perception_node.visual_module.object_images import BLOCK_SIDE, object_images
+from perception_node.visual_module.weights import load_weights, read_metadata, save_weights
 from sim_node.data_sets import render_shard
 from sim_node.world import World
 
@@ -66,6 +68,34 @@ def test_crops_put_back_in_their_places_are_the_objects_images(folder: Path) -> 
     assert placed.numpy() == pytest.approx(images, abs=0.5 / 255 + 1e-6)
 
 
+def test_turned_crops_have_the_outline_of_a_turned_box_and_the_same_extents() -> None:
+    sizes = torch.tensor([[20, 24]] * 200)
+    whole = place_crops(torch.ones(200, 3, 32, 32), torch.zeros(200, 2, dtype=torch.long), 32)
+    whole[:, :, : 32 - 24] = 0.0
+    whole[..., 20:] = 0.0
+    rng = torch.Generator().manual_seed(0)
+    assert torch.equal(turned(whole, sizes, 0.0, rng), whole)
+    masks = turned(whole, sizes, 1.0, rng)[:, 0].numpy() > 0.05
+    for mask in masks:
+        rows, columns = np.nonzero(mask)
+        assert (columns.min(), columns.max(), rows.max()) == (0, 19, 31) and rows.min() <= 9
+        # Every row and column of a convex outline is one run.
+        assert all(np.ptp(np.flatnonzero(line)) + 1 == line.sum() for line in mask if line.any())
+        assert all(np.ptp(np.flatnonzero(line)) + 1 == line.sum() for line in mask.T if line.any())
+    corner = masks[:, 31, 0]
+    assert 0.05 < corner.mean() < 0.9
+
+
+def test_objects_are_about_as_large_as_in_views_of_one_scale() -> None:
+    sizes = torch.tensor([[9, 13]] * 500)
+    pixels = torch.ones(500, 3, 32, 32)
+    _, wanted = stretched(pixels, sizes, 2.4, torch.Generator().manual_seed(0), BLOCK_SIDE)
+    longer = wanted.amax(1).float() / BLOCK_SIDE
+    ratio = (wanted[:, 0] / wanted[:, 1]).log().abs()
+    assert longer.min() >= 0.7 and longer.max() <= 1.45
+    assert ratio.max() < 1.1 and 0.3 < ratio.mean() < 0.6
+
+
 def test_training_needs_no_ground_truth(folder: Path, tmp_path: Path) -> None:
     with np.load(folder / "shard_0000.npz") as shard:
         np.savez(tmp_path / "shard_0000.npz", rgb=shard["rgb"], labels=shard["labels"])
@@ -94,6 +124,18 @@ def test_a_resumed_run_is_the_same_as_one_that_was_not_stopped(
     assert found + losses(second, 6) == pytest.approx(expected, rel=1e-5)
     for ours, theirs in zip(second.module.parameters(), whole.module.parameters()):
         assert torch.allclose(ours, theirs, atol=1e-6)
+
+
+def test_a_run_can_begin_with_the_weights_of_another_one(folder: Path, tmp_path: Path) -> None:
+    crops, path = read_crops(folder), tmp_path / "weights.safetensors"
+    first = Trainer(crops, TINY)
+    losses(first, 2)
+    save_weights(first.module, path, {})
+    begun = Trainer(crops, replace(TINY, start=str(path)))
+    for ours, theirs in zip(begun.module.parameters(), first.module.parameters()):
+        assert torch.equal(ours, theirs)
+    with pytest.raises(WeightsError, match="does not exist"):
+        Trainer(crops, replace(TINY, start=str(tmp_path / "none")))
 
 
 def test_a_checkpoint_of_another_run_is_refused(folder: Path, tmp_path: Path) -> None:

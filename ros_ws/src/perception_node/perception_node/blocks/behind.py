@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a block is seen on the one below it in the picture, or behind it."""
+"""Whether what is seen over a block in the picture is on it, or behind it."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from perception_node.camera import PinholeCamera
 
+from scene_graph import BOX
+
 from .unit_bodies import LOW, TURN, UNITS, WIDE
 
 Array = NDArray[np.float64]
@@ -21,6 +23,11 @@ Array = NDArray[np.float64]
 #: that looks down on it by this tangent or more.
 HIDES: Final = 0.45
 LEAST_STEEP: Final = 0.08
+#: Nothing stands on a box whose outline ends where its top does, to these parts of what the
+#: narrowest block [m] would hide of it, for a camera that looks down on it by this tangent or more.
+WHOLE: Final = (-0.25, 0.1)
+NARROWEST: Final = 0.025
+STEEP: Final = 0.2
 
 
 def seen_behind(
@@ -46,13 +53,7 @@ def seen_behind(
     for upper, lower in enumerate(below):
         if lower < 0:
             continue
-        size = values[lower, WIDE:LOW]
-        corners = UNITS[shapes[lower]] * size
-        corners = corners[corners[:, 2] > 0.0]
-        c, s = np.cos(values[lower, TURN]), np.sin(values[lower, TURN])
-        turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-        height = values[lower, LOW] + 0.5 * size[2]
-        top = corners @ turn + [*values[lower, :2], height]
+        top, steep = _top(values[lower], shapes[lower], camera)
         points = outlines[upper]
         left, right = np.quantile(points[:, 0], [0.3, 0.7])
         middle = (points[:, 0] >= left) & (points[:, 0] <= right)
@@ -60,14 +61,45 @@ def seen_behind(
         # The upper boundary of the top is that of its convex outline.
         back = _upper_edge(camera.project(top), ends[:, 0])
         inside = np.isfinite(back)
-        off = camera.position_world - top.mean(axis=0)
-        steep = float(off[2] / np.hypot(*off[:2]))
         if not inside.any() or steep < LEAST_STEEP:
             continue
         hides = float(np.median(ends[inside, 1] - back[inside])) / scale[upper]
         width = 0.5 * (values[upper, WIDE] + values[lower, WIDE])
         behind[upper] = hides < HIDES * steep * width
     return behind
+
+
+def top_is_seen(
+    values: Array, shape: str, outline: Array, scale: float, camera: PinholeCamera
+) -> bool:
+    """Whether the top of a block is seen up to its back, so that nothing stands on it.
+
+    Args:
+        values: its parameters, shape (7,).
+        outline: points around it, shape (n, 2) [px].
+        scale: of the picture there [px/m].
+    """
+    top, steep = _top(values, shape, camera)
+    if shape != BOX or steep < STEEP:
+        return False
+    left, right = np.quantile(outline[:, 0], [0.3, 0.7])
+    middle = (outline[:, 0] >= left) & (outline[:, 0] <= right)
+    ends = outline[middle & (outline[:, 1] < np.median(outline[:, 1]))]
+    hides = float(np.nanmedian(ends[:, 1] - _upper_edge(camera.project(top), ends[:, 0]))) / scale
+    share = hides / (steep * 0.5 * (values[WIDE] + NARROWEST))
+    return WHOLE[0] < share < WHOLE[1]
+
+
+def _top(values: Array, shape: str, camera: PinholeCamera) -> tuple[Array, float]:
+    """Corners of a block's top, (n, 3) [m], and by which tangent the camera looks down on it."""
+    size = values[WIDE:LOW]
+    corners = UNITS[shape] * size
+    corners = corners[corners[:, 2] > 0.0]
+    c, s = np.cos(values[TURN]), np.sin(values[TURN])
+    turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    top = corners @ turn + [*values[:2], values[LOW] + 0.5 * size[2]]
+    off = camera.position_world - top.mean(axis=0)
+    return top, float(off[2] / np.hypot(*off[:2]))
 
 
 def _upper_edge(corners: Array, columns: Array) -> Array:

@@ -40,6 +40,8 @@ HARDLY_SEEN: Final = (4.5, 3.0)
 HARDLY_SEEN_SHARPLY: Final = (2.0, 2.0)
 #: A root mean square of as few values may be √2 times as large as one of many.
 FEW: Final = 5
+#: The first limit is one for so many values: of more, the furthest is further off.
+OF_ONE: Final = 3
 #: Standard deviation of the edges of what is taken for a cube, and for one of equal cubes [m].
 CUBE: Final = 8e-4
 EQUAL: Final = 3e-4
@@ -214,8 +216,10 @@ def _agree(groups: Sequence[tuple[_Values, float | None]], hardly: _Limits) -> b
         found, doubt = np.array(values).T
         beyond = np.maximum(np.abs(found - mean) - ALIKE, 0.0) / doubt
         sharp = doubt < SHARP
-        few = float(np.sqrt(1.0 + FEW / max(1, int(sharp.sum()))))
-        if not _within(beyond[sharp], AGREES[0], AGREES[1] * few):
+        count = max(1, int(sharp.sum()))
+        few = float(np.sqrt(1.0 + FEW / count))
+        most = float(np.sqrt(AGREES[0] ** 2 + 2.0 * np.log(max(1.0, count / OF_ONE))))
+        if not _within(beyond[sharp], most, AGREES[1] * few):
             return False
         hardly_seen += list(beyond[~sharp])
     return _within(np.array(hardly_seen), *hardly)

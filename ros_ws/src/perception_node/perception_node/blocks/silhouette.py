@@ -21,10 +21,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception_node.camera import PinholeCamera
+from perception_node.errors import BadImageError
 from perception_node.segment import Segments
+from perception_node.segment.missed import missed_sentence
 from scene_graph import BOX, SPHERE
 
-from .behind import seen_behind
+from .behind import seen_behind, top_is_seen
 from .measure import BlockSurface
 from .outline import shape_from_outline
 from .reach import DIRECTIONS, Reach, points_around, reach_of, towers_over
@@ -50,6 +52,9 @@ CUBE: Final = 0.02
 #: cubes, as a root mean square, are theirs [m].
 EQUAL: Final = 0.0005
 CUBES_FIT: Final = 0.0016
+#: Blocks of one width that fit are not believed where one of them is further from where it is
+#: expected than by so many standard deviations: another width looks the same from nearer by.
+ASTRAY: Final = 1.25
 #: Those of other boxes have to be nearer by this.
 BETTER: Final = 0.7
 #: Yaws at which the fit begins [rad].
@@ -83,7 +88,8 @@ def measure_silhouettes(
         feet: of the places, at least one, shape (m, 3) [m].
 
     Raises:
-        BadImageError: if a block is not over a place; the sentence names its label.
+        BadImageError: if a block is not over a place; if there may be one that was not found, on
+            one whose top is not seen whole.
     """
     outlines = [points_around(segment.part, segment.outline) for segment in segments]
     towers = towers_over(outlines, camera, feet)
@@ -104,6 +110,9 @@ def measure_silhouettes(
         if fit.shapes != shapes:
             fit = _Fit(towers, shapes, reach, outlines, camera, feet)
             found = fit.best()
+    for index, segment in enumerate(segments):
+        if segment.over is not None and not fit.top_is_seen(found, index):
+            raise BadImageError(missed_sentence(*segment.over))
     return fit.surfaces(found, rivals)
 
 
@@ -165,14 +174,31 @@ class _Fit:
         """Parameters of all blocks, shape (N, 6); covariance; misfits, shape (N,) [m]."""
         start = self._start()
         fits = [self._fitted(start, EQUAL, EQUAL, alike=True)]
-        if fits[0][2].max() > CUBES_FIT:
+        astray = self._astray(fits[0][0])
+        if fits[0][2].max() > CUBES_FIT or astray > ASTRAY:
             start = self._turned(start)
             fits.append(self._fitted(start, EQUAL, EQUAL))
+            if fits[0][2].max() <= CUBES_FIT and self._astray(fits[1][0]) >= astray:
+                return fits[0]
         if fits[-1][2].max() > CUBES_FIT:
             others = self._fitted(start, SQUARE, CUBE)
             if others[2].max() < BETTER * fits[-1][2].max():
                 fits.append(others)
         return fits[-1]
+
+    def top_is_seen(self, found: Fitted, index: int) -> bool:
+        """Whether nothing can stand on a block."""
+        return top_is_seen(
+            self._with_low(found[0])[index], self.shapes[index], self.outlines[index],
+            float(self.reach.scale[index]), self.camera,
+        )  # fmt: skip
+
+    def _astray(self, values: Array) -> float:
+        """How far a block is at most from its place or the one below it [standard deviations]."""
+        on_block = self.below >= 0
+        under = np.where(on_block[:, None], values[self.below, :2], self.foot[:, :2])
+        off = np.linalg.norm(values[:, :2] - under, axis=1)
+        return float((off / np.where(on_block, ON_BLOCK, ON_PLACE)).max())
 
     def surfaces(self, found: Fitted, rivals: Sequence[str]) -> tuple[BlockSurface, ...]:
         """What was found, in the order of the segments."""

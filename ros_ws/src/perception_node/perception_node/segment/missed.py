@@ -2,7 +2,8 @@
 """What may be a block on the uppermost one of a tower, and was not taken for one.
 
 A thing behind a tower and a block on it look alike. Where the network is in two minds about what
-is right over a tower, the picture is better refused than a block left out.
+is right over a tower, the picture is better refused than a block left out; unless the top of the
+uppermost block turns out to be seen whole, once it is measured.
 """
 
 from __future__ import annotations
@@ -27,10 +28,18 @@ VAGUE: Final = 0.03
 LIKELY: Final = 0.2
 
 
+def missed_sentence(column: float, row: float) -> str:
+    """What is said of a pixel of the picture where a block may be that was missed."""
+    return (
+        f"what is seen at pixel ({column:.0f}, {row:.0f}) may be a block on a tower or something "
+        "behind it; take away what stands behind the places, or look from another side"
+    )
+
+
 def may_be_missed(
     masks: Sequence[Mask], vague: Sequence[Mask], other: Sequence[Mask], likely: Floats
-) -> tuple[int, int] | None:
-    """Where a block may be that was missed, right over one of the found ones.
+) -> dict[int, tuple[int, int]]:
+    """Where blocks may be that were missed, right over found ones.
 
     Args:
         masks: of N blocks, shape (h, w) of the view.
@@ -39,12 +48,13 @@ def may_be_missed(
         likely: the probability that a pixel is of a block, shape (h, w).
 
     Returns:
-        Column and row of the view, or None.
+        Column and row of the view, by the index of the one below.
     """
+    missed: dict[int, tuple[int, int]] = {}
     taken = np.zeros(likely.shape, bool)
     for mask in (*masks, *other):
         taken |= mask
-    for mask in masks:
+    for index, mask in enumerate(masks):
         zone = _over(mask)
         if any(zone[one].any() for one in masks if one is not mask):
             continue  # that is the block which stands on it
@@ -54,8 +64,8 @@ def may_be_missed(
         left_out = max((float(one[zone].mean()) for one in vague), default=0.0)
         if left_out > VAGUE or float(likely[zone].mean()) > LIKELY:
             rows, columns = pixels_of(zone)
-            return int(np.median(columns)), int(np.median(rows))
-    return None
+            missed[index] = int(np.median(columns)), int(np.median(rows))
+    return missed
 
 
 def _over(mask: Mask) -> Mask:

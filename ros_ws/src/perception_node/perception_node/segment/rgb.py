@@ -17,7 +17,7 @@ from perception_node.observation import Observation
 
 from .background import stands_behind
 from .front_view import FrontView
-from .missed import may_be_missed
+from .missed import may_be_missed, missed_sentence
 from .segments import Segment, Segments, largest_part
 from .volume import Volume
 
@@ -51,8 +51,7 @@ def find_in_rgb(observation: Observation, volume: Volume | None = None) -> Segme
     """The blocks that colour shows over the places.
 
     Raises:
-        BadImageError: if camera or places are unknown, or not seen from the front; if there may be
-            a block that was not found.
+        BadImageError: if camera or places are unknown, or not seen from the front.
         WeightsError: if the network's weights cannot be read.
     """
     if observation.camera is None:
@@ -66,13 +65,6 @@ def find_in_rgb(observation: Observation, volume: Volume | None = None) -> Segme
         )
     view = FrontView.of(observation.camera, volume)
     found = find_in_view(view, view.taken(observation.rgb), network())
-    if found.missed is not None:
-        column, row = view.in_picture(np.array([found.missed], np.float64))[0]
-        raise BadImageError(
-            f"what is seen at pixel ({column:.0f}, {row:.0f}) may be a block on a tower or "
-            "something behind it; take away what stands behind the places, or look from another "
-            "side"
-        )
     size = (observation.rgb.shape[0], observation.rgb.shape[1])
     labels = np.zeros(size, np.uint8)
     best = np.zeros(size, np.float32)
@@ -85,8 +77,18 @@ def find_in_rgb(observation: Observation, volume: Volume | None = None) -> Segme
     segments = Segments.from_labels(labels, SOURCE, hides)
     for item in segments:
         _check_one_color(observation.rgb, item)
+    over = {
+        index + 1: tuple(map(float, view.in_picture(np.array([pixel], np.float64))[0]))
+        for index, pixel in found.missed.items()
+    }
+    if lost := over.keys() - {item.label for item in segments}:
+        raise BadImageError(missed_sentence(*over[min(lost)]))
     blocks = tuple(
-        replace(item, outline=view.in_picture(found.fields[item.label - 1].edge()))
+        replace(
+            item,
+            outline=view.in_picture(found.fields[item.label - 1].edge()),
+            over=over.get(item.label),
+        )
         for item in segments
     )
     return replace(segments, blocks=blocks)
@@ -175,12 +177,13 @@ class FoundInView:
     Attributes:
         fields: one for each block.
         hides: the places, and is no block, shape (h, w).
-        missed: where a block may be that was not found, column and row, or None.
+        missed: where blocks may be that were not found, column and row, by the index of the field
+            right below.
     """
 
     fields: tuple[Field, ...]
     hides: Mask
-    missed: tuple[int, int] | None = None
+    missed: dict[int, tuple[int, int]]
 
 
 def find_in_view(view: FrontView, rgb: NDArray[np.uint8], network: MaskNetwork) -> FoundInView:

@@ -34,12 +34,14 @@ class Segment:
             the same array where there is nothing to leave out.
         outline: points around the part, exact to parts of a pixel, shape (n, 2) [px]; None where
             nothing more exact is known than its pixels.
+        over: where a block may stand on it that was not found, column and row [px]; None: nowhere.
     """
 
     label: int
     mask: Mask
     part: Mask
     outline: NDArray[np.float64] | None = None
+    over: tuple[float, ...] | None = None
 
 
 @dataclass(frozen=True)

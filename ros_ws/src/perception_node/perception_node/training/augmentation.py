@@ -17,6 +17,13 @@ from .dataset import CROP_SIZE
 
 #: No object is made narrower or lower than this [px].
 MIN_SIDE: Final = 5
+#: Of how long the longer side of an object in a view of one scale is to be, the visible part of a
+#: damaged one included.
+ABOUT: Final = (0.75, 1.4)
+#: Sine of the greatest angle at which a block that is turned is looked down on, and how bright the
+#: darker one of its two sides is at least.
+STEEPEST: Final = 0.7
+DARKEST: Final = 0.4
 
 
 def recolored(pixels: Tensor, generator: torch.Generator) -> Tensor:
@@ -36,21 +43,33 @@ def recolored(pixels: Tensor, generator: torch.Generator) -> Tensor:
 
 
 def stretched(
-    pixels: Tensor, sizes: Tensor, factor: float, generator: torch.Generator
+    pixels: Tensor,
+    sizes: Tensor,
+    factor: float,
+    generator: torch.Generator,
+    side: int | None = None,
 ) -> tuple[Tensor, Tensor]:
     """Crops made wider or narrower, and higher or lower, as blocks of other shapes would be.
 
     Args:
         pixels: in 0..1, shape (n, channels, CROP_SIZE, CROP_SIZE), object at the bottom left.
         sizes: width and height of the objects [px], shape (n, 2).
-        factor: both are divided by up to this, and multiplied by up to its root, each by itself.
+        factor: by up to which width and height differ; without ``side`` both are divided by up to
+            it, and multiplied by up to its root, each by itself.
+        side: about how long the longer one becomes, as in views of one scale [px].
 
     Returns:
         Pixels and sizes.
     """
-    low, high = -math.log(factor), 0.5 * math.log(factor)
-    drawn = torch.exp(low + (high - low) * torch.rand(sizes.shape, generator=generator))
-    wanted = (sizes * drawn).round().clamp(MIN_SIDE, CROP_SIZE).long()
+    if side is None:
+        low, high = -math.log(factor), 0.5 * math.log(factor)
+        drawn = sizes * torch.exp(low + (high - low) * torch.rand(sizes.shape, generator=generator))
+    else:
+        ratio = factor ** (2.0 * torch.rand(len(sizes), generator=generator) - 1.0)
+        low, high = ABOUT
+        longer = side * (low + (high - low) * torch.rand(len(sizes), generator=generator))
+        drawn = longer[:, None] * torch.stack([ratio, 1.0 / ratio], 1).clamp(max=1.0)
+    wanted = drawn.round().clamp(MIN_SIDE, CROP_SIZE).long()
     ratio = sizes / wanted
     steps = torch.arange(CROP_SIZE) + 0.5
     # Where each pixel comes from, in 0..CROP_SIZE from the left and from the bottom.
@@ -64,6 +83,42 @@ def stretched(
     grid = torch.stack([columns, rows], -1)
     moved = functional.grid_sample(pixels, grid, mode="nearest", align_corners=False)
     return moved * ~outside[:, None], wanted
+
+
+def turned(pixels: Tensor, sizes: Tensor, share: float, generator: torch.Generator) -> Tensor:
+    """Crops cut as if the blocks were turned about the vertical, up to where two sides are alike.
+
+    Two sides of such a block are seen, which meet in the edge that is nearest: there its outline is
+    lowest, and its lower left corner is not on it. The extents stay as they are.
+
+    Args:
+        pixels: in 0..1, shape (n, channels, CROP_SIZE, CROP_SIZE), object at the bottom left.
+        sizes: width and height of the objects [px], shape (n, 2).
+        share: of the objects that are turned.
+    """
+    n = len(pixels)
+    yaw = math.radians(1.0) + math.radians(88.0) * torch.rand(n, 1, 1, generator=generator)
+    steep = STEEPEST * torch.rand(n, 1, 1, generator=generator)
+    steep = steep * (torch.rand(n, 1, 1, generator=generator) < share)
+    width, height = sizes[:, 0, None, None], sizes[:, 1, None, None]
+    edge = width / (yaw.cos() + yaw.sin())
+    # How far the left and the right side reach across, and how far their outer ends are up.
+    left, right = edge * yaw.cos(), edge * yaw.sin()
+    most = 0.6 * height / (left + right)
+    steep = torch.minimum(steep, most)
+    steps = torch.arange(CROP_SIZE) + 0.5
+    across, up = steps[None, None, :], (CROP_SIZE - steps)[None, :, None]
+    lower = steep * torch.maximum(right * (left - across) / left, left * (across - left) / right)
+    upper = height - steep * torch.maximum(
+        left * (right - across) / right, right * (across - right) / left
+    )
+    inside = (up - lower + 0.5).clamp(0.0, 1.0) * (upper - up + 0.5).clamp(0.0, 1.0)
+    shade = DARKEST + (1.0 - DARKEST) * torch.rand(n, 2, 1, 1, generator=generator)
+    sides = torch.where(across < left, shade[:, 0], shade[:, 1])
+    # Over the upper edges of both sides the top is seen, as bright as it was.
+    seen = torch.where((steep > 0) & (up < height - steep * (left + right) + lower), sides, 1.0)
+    kept = torch.where(steep > 0, inside * seen, 1.0)
+    return pixels * kept[:, None]
 
 
 def damaged(pixels: Tensor, sizes: Tensor, share: float, generator: torch.Generator) -> Tensor:

@@ -110,7 +110,7 @@ def how_trained(
         flag = name.replace("_", "-")
         if isinstance(value, bool):
             flags.append(f"--{flag}" if value else f"--no-{flag}")
-        else:
+        elif value != "":
             flags.append(f"--{flag} {value}")
     try:
         commit = subprocess.run(

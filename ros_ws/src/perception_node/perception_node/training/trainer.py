@@ -12,10 +12,11 @@ from torch import Tensor
 
 from perception_node.visual_module.coordinate_regressor import DEFAULT_BACKBONE
 from perception_node.visual_module.grid_sampler import sample
-from perception_node.visual_module.object_images import IMAGE_SIZE
+from perception_node.visual_module.object_images import BLOCK_SIDE, IMAGE_SIZE
 from perception_node.visual_module.visual_module import TRANSLATION_FACTOR, VisualModule
+from perception_node.visual_module.weights import read_weights
 
-from .augmentation import damaged, recolored, speckled, stretched
+from .augmentation import damaged, recolored, speckled, stretched, turned
 from .dataset import ObjectCrops, place_crops
 from .objective import reconstruction_loss
 from .run import Stateful, TrainingRun
@@ -35,11 +36,13 @@ class TrainingConfig:
         shift_share: share of objects that are put anywhere in the image; the others are shifted
             together with their scene.
         damage_share: share of inputs hit by each kind of damage; targets are never damaged.
-        stretch: objects are made narrower or lower by up to this factor, or wider or higher by its
-            root.
+        stretch: by up to this factor width and height of objects are made to differ; what looks at
+            them in one scale gets them in about that one, others smaller or larger.
+        turn_share: share of objects that are cut as if they were turned.
         bfloat16: autocast of the regressor; faster only where the processor has AMX.
         checkpoint_every: steps between checkpoints.
         seed: of weights, batches and augmentation.
+        start: weights to begin with, the path of a file; empty: random ones.
     """
 
     backbone: str = DEFAULT_BACKBONE
@@ -52,9 +55,11 @@ class TrainingConfig:
     shift_share: float = 0.7
     damage_share: float = 0.3
     stretch: float = 2.4
+    turn_share: float = 0.5
     bfloat16: bool = False
     checkpoint_every: int = 200
     seed: int = 0
+    start: str = ""
 
 
 def bfloat16_helps() -> bool:
@@ -66,13 +71,21 @@ def bfloat16_helps() -> bool:
 
 
 class Trainer(TrainingRun[float]):
-    """One training run of G; each step tells its loss."""
+    """One training run of G; each step tells its loss.
+
+    Raises:
+        WeightsError: if it is to begin with weights that cannot be read.
+    """
 
     def __init__(self, crops: ObjectCrops, config: TrainingConfig) -> None:
         super().__init__(config, config.steps)
         self.crops = crops
         torch.manual_seed(config.seed)
-        self.module = VisualModule(config.backbone, config.translation_factor, config.imagenet)
+        self.module = (
+            read_weights(Path(config.start))
+            if config.start
+            else VisualModule(config.backbone, config.translation_factor, config.imagenet)
+        )
         self.module.to(memory_format=torch.channels_last)  # a third faster on the CPU
         self.optimizer = torch.optim.AdamW(
             self.module.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay
@@ -123,7 +136,9 @@ class Trainer(TrainingRun[float]):
         picked = full[torch.randint(0, len(full), (config.batch_scenes,), generator=rng)]
         index = (starts[picked, None] + torch.arange(objects)).flatten()
         pixels = recolored(self.crops.pixels[index].float() / 255.0, rng)
-        pixels, sizes = stretched(pixels, self.crops.sizes[index], config.stretch, rng)
+        side = BLOCK_SIDE if config.backbone == DEFAULT_BACKBONE else None
+        pixels, sizes = stretched(pixels, self.crops.sizes[index], config.stretch, rng, side)
+        pixels = turned(pixels, sizes, config.turn_share, rng)
         corners = self.crops.corners[index]
         corners = _shifted(corners, sizes, objects, config.shift_share, rng)
         target = place_crops(pixels, corners)

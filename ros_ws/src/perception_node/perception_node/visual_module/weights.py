@@ -62,7 +62,12 @@ def read_metadata(path: Path) -> dict[str, str]:
 
 
 def load_weights(path: Path = DEFAULT_WEIGHTS) -> VisualModule:
-    """A module with the weights of a file, ready for inference only.
+    """A module with the weights of a file, ready for inference only; raises WeightsError."""
+    return read_weights(path).for_inference()
+
+
+def read_weights(path: Path) -> VisualModule:
+    """A module with the weights of a file, as it was when they were saved.
 
     Raises:
         WeightsError: if the file is missing, damaged, or was not made by :func:`save_weights`.
@@ -95,4 +100,4 @@ def load_weights(path: Path = DEFAULT_WEIGHTS) -> VisualModule:
             f"weights file {path} holds values that are not finite; {_RETRAIN}", path
         )
     module.load_state_dict(tensors)
-    return module.for_inference()
+    return module
