@@ -282,7 +282,7 @@ def low_rows(blocks: int) -> Callable[[int], Drawn]:
     return low
 
 
-def half_covered(blocks: int) -> Callable[[int], Drawn]:
+def behind_a_thing(blocks: int) -> Callable[[int], Drawn]:
     """Random states of a row, a thing before the first camera that hides part of a stack."""
 
     def draw(number: int) -> Drawn:

@@ -50,6 +50,10 @@ DEVIATIONS: Final = 4.0
 SEEN_THROUGH: Final = 0.3
 #: What lies further than this from every block is none of them [m].
 APART: Final = 0.04
+_GLIMPSES: Final = (
+    "of no block enough is seen to say what it is; take away what is before them, or look from "
+    "another side"
+)
 #: x, y, low and high among the parameters of a surface.
 _WHERE: Final = [0, 1, 5, 6]
 
@@ -147,6 +151,9 @@ class JoinedViews:
         found: list[_Block] = []
         for name, item in perceived.items():
             found = _matched(found, _sightings(name, item))
+        glimpses = [one for view in views.values() for one in view.seen.glimpses]
+        if not found and glimpses:
+            return self._one.rejected(GraphStatus.OCCLUDED, _GLIMPSES)
         if not found:
             return self._one.rejected(*judge_empty(occlusion, config))
         main = next(iter(views))
@@ -172,7 +179,6 @@ class JoinedViews:
                 for view in views.values()
             ]
         )
-        glimpses = [one for view in views.values() for one in view.seen.glimpses]
         hidden = find_hidden(cells, standing, blocks, glimpses, config)
         graph = build_graph(
             *(observation, _labelled(segments, found, main), occlusion, coordinates),

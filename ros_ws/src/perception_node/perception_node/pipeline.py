@@ -169,11 +169,16 @@ class Perception:
             raise BadImageError(problem)
         if problem := sight_problem(observation, segments, places, config):
             raise BadImageError(problem)
-        if len(segments) == 0:
+        def nothing(seen: Seen) -> Perceived:
             occlusion = find_occlusion(observation, segments, places, config)
-            view = View(observation, Seen(segments, ()), occlusion)
+            view = View(observation, seen, occlusion)
             return replace(refused(judge_empty(occlusion, config)), view=view)
-        seen = self._seen(observation, segments, places)
+
+        seen = Seen(segments, ())
+        if len(segments):
+            seen = self._seen(observation, segments, places)
+        if not len(seen.segments):
+            return nothing(seen)
         coordinates = self.locator.locate(self.locator.images(observation.rgb, seen.segments))
         fallen = find_fallen(observation.rgb, seen.segments, seen.surfaces, coordinates)
         if fallen:
@@ -198,6 +203,8 @@ class Perception:
             if not (poor := poorly_seen(seen, blocks, standing.stacks, coordinates.iou, config)):
                 break
             seen = seen.without(poor, observation, places.places)
+            if not len(seen.segments):
+                return nothing(seen)
             coordinates = self.locator.locate(self.locator.images(observation.rgb, seen.segments))
         occlusion = find_occlusion(observation, segments, places, config, blocks.poses)
         hidden: tuple[Hidden, ...] = ()
