@@ -91,9 +91,7 @@ class CameraInput:
         self._topics = {
             stream: f"{name}/{topic}" for stream, topic in TOPICS.items() if stream not in unused
         }
-        self._pairing = FramePairing(
-            tuple(self._topics), round(1e9 * values["pairing_tolerance"])
-        )
+        self._pairing = FramePairing(tuple(self._topics), round(1e9 * values["pairing_tolerance"]))
         self._on_frame = on_frame
         for stream, topic in self._topics.items():
             kind = Image if stream in READERS else CameraInfo

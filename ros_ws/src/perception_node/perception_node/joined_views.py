@@ -78,7 +78,7 @@ class _Sighting:
 
     @property
     def spot(self) -> Array:
-        """x, y of the axis and z of the upper end, shape (3,) [m]: what is known of a covered one."""
+        """x, y of the axis, z of the upper end: also known of a covered one, shape (3,) [m]."""
         return np.array([*self.surface.position, self.surface.high])
 
 
@@ -116,7 +116,7 @@ class JoinedViews:
             observations: by the names of the cameras, at least one.
         """
         every = {name: self._understood(name, item) for name, item in observations.items()}
-        for name, item in every.items():
+        for item in every.values():
             useless = item.view is None and item.status is not GraphStatus.BAD_IMAGE
             if useless or (item.view is not None and item.view.fallen):
                 return replace(item, view=None)
@@ -347,7 +347,9 @@ def _names(
         common = [color for color in colors[0] if all(color in some for some in colors)]
         if not common:
             one, other = next(
-                (used[0], one) for one, some in zip(sure or used, colors) if colors[0][0] not in some
+                (used[0], one)
+                for one, some in zip(sure or used, colors)
+                if colors[0][0] not in some
             )
             raise ContradictionError(
                 f"{one.item.name} for {one.camera} is {other.item.name} for {other.camera}; "

@@ -54,11 +54,11 @@ class Moments:
         silent = [name for name in self._names if name not in self._heard]
         if not silent:
             return ""
-        return f"no picture of {' and '.join(silent)} comes; check it, all is seen without it"
+        return f"no picture of {' and '.join(silent)} comes, so the others are looked at alone"
 
     def problem(self, now: float) -> str:
         """A sentence where frames come that make no moment, once in a while [s]."""
-        if self._since is None or now - self._since < SILENCE:
+        if self._since is None or now - self._since < 2.0 * SILENCE:
             return ""
         self._since = now
         return self._pairing.problem({name: f"frame of {name}" for name in self._heard})

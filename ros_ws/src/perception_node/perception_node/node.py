@@ -217,7 +217,9 @@ class PerceptionNode(Node):
                 f"internal error: {error!r}; please report the log of this node",
             )
         if note := self._moments.note():
-            perceived = replace(perceived, message="; ".join(filter(None, (perceived.message, note))))
+            perceived = replace(
+                perceived, message="; ".join(filter(None, (perceived.message, note)))
+            )
         self._publish(perceived, header, frame.arrival)
         rgb = main.picture
         if rgb is not None and self.context.ok() and self._drawings.get_subscription_count():

@@ -169,6 +169,7 @@ class Perception:
             raise BadImageError(problem)
         if problem := sight_problem(observation, segments, places, config):
             raise BadImageError(problem)
+
         def nothing(seen: Seen) -> Perceived:
             occlusion = find_occlusion(observation, segments, places, config)
             view = View(observation, seen, occlusion)
@@ -233,7 +234,7 @@ class Perception:
         return Perceived(graph, *verdict, segments, likely, known, coverage, view)
 
     def _seen(self, observation: Observation, segments: Segments, places: Places) -> Seen:
-        """The blocks measured; where some may hide others, without those that are mostly covered."""
+        """The blocks measured; where things hide others, without those that are mostly covered."""
         if isinstance(places, FromAnywhere) and observation.depth is not None:
             return measure_seen(observation, segments, places.places, by_things=True)
         if isinstance(places, TwoRows) and observation.depth is not None:

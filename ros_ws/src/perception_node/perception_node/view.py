@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What one camera shows of the blocks, on the way to a graph: what several cameras are joined of."""
+"""What one camera shows of the blocks, on the way to a graph: what joined views are made of."""
 
 from __future__ import annotations
 

@@ -22,15 +22,15 @@ class FromAnywhere(RowOfPlaces):
     One stack may hide another one, and what is no block may hide a part of any.
     """
 
-    def seen_by(self, camera: PinholeCamera | None) -> Places:
+    def seen_by(self, _camera: PinholeCamera | None) -> Places:
         """Itself."""
         return self
 
     def stand(
         self,
-        observation: Observation,
-        segments: Segments,
-        coordinates: Coordinates,
+        _observation: Observation,
+        _segments: Segments,
+        _coordinates: Coordinates,
         centres_world: NDArray[np.float64] | None = None,
     ) -> Standing:
         """See :class:`Places`; raises BadImageError where nothing is measured."""

@@ -150,7 +150,7 @@ def _is_free(points: Array, seen: Array, camera: PinholeCamera) -> Mask:
 
 
 def free_share(observation: Observation, block: BlockPose) -> float:
-    """How much of a block's inside the camera sees through, 0..1; nothing where depth is unknown."""
+    """How much of a block's inside the camera sees through, 0..1; none where depth is unknown."""
     depth, camera = observation.depth, observation.camera
     if depth is None or camera is None:
         return 0.0
