@@ -41,7 +41,8 @@ from .visual_module.coordinates import Coordinates
 
 Array = NDArray[np.float64]
 
-#: Axes or upper ends of one block as two cameras measure them are no further apart [m].
+#: Axes or upper ends of one block as two cameras measure them are no further apart [m], and up to
+#: twice as far where that is within two standard deviations.
 SAME_BLOCK: Final = 0.02
 #: Where they are further apart than this and so many standard deviations, a calibration is wrong.
 AGREES: Final = 0.006
@@ -80,6 +81,11 @@ class _Sighting:
     def spot(self) -> Array:
         """x, y of the axis, z of the upper end: also known of a covered one, shape (3,) [m]."""
         return np.array([*self.surface.position, self.surface.high])
+
+    @property
+    def doubt(self) -> Array:
+        """Standard deviations of the spot, shape (3,) [m]."""
+        return np.asarray(np.sqrt(np.diag(self.surface.covariance)[[0, 1, 6]]))
 
 
 _Block = tuple[_Sighting, ...]
@@ -228,8 +234,11 @@ def _matched(found: Sequence[_Block], seen: Sequence[_Sighting]) -> list[_Block]
     """
     if not found or not seen:
         return [*found, *((one,) for one in seen)]
-    known = np.array([np.mean([one.spot for one in block], axis=0) for block in found])
-    apart = np.abs(known[:, None] - np.array([one.spot for one in seen]))
+    spots = np.array([np.mean([one.spot for one in block], axis=0) for block in found])
+    doubts = np.array([np.max([one.doubt for one in block], axis=0) for block in found])
+    apart = np.abs(spots[:, None] - np.array([one.spot for one in seen]))
+    doubt = np.hypot(doubts[:, None], np.array([one.doubt for one in seen]))
+    apart = np.maximum(apart - np.minimum(2.0 * doubt, SAME_BLOCK), 0.0)
     far = np.maximum(np.hypot(apart[..., 0], apart[..., 1]), apart[..., 2])
     rows, columns = linear_sum_assignment(np.minimum(far, SAME_BLOCK))
     of = {int(i): seen[int(j)] for i, j in zip(rows, columns) if far[i, j] < SAME_BLOCK}
