@@ -86,7 +86,7 @@ def test_the_order_of_the_cameras_changes_nothing(rows: World) -> None:
         )  # fmt: skip
 
 
-@pytest.mark.parametrize("by", [0.012, 0.06])
+@pytest.mark.parametrize("by", [0.007, 0.06])
 def test_a_camera_that_is_not_where_it_is_said_to_be_is_named(rows: World, by: float) -> None:
     rows.reset(HIDING)
     seen = views(rows)

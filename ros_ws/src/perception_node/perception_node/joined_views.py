@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import Final
 
 import numpy as np
@@ -55,6 +56,10 @@ _GLIMPSES: Final = (
     "of no block enough is seen to say what it is; take away what is before them, or look from "
     "another side"
 )
+#: Two cameras may see all blocks so far from one another, as calibrations are not exact [m].
+OFFSET: Final = 0.004
+#: x, y and high among the parameters of a surface.
+_SPOT: Final = [0, 1, 6]
 #: x, y, low and high among the parameters of a surface.
 _WHERE: Final = [0, 1, 5, 6]
 
@@ -85,7 +90,7 @@ class _Sighting:
     @property
     def doubt(self) -> Array:
         """Standard deviations of the spot, shape (3,) [m]."""
-        return np.asarray(np.sqrt(np.diag(self.surface.covariance)[[0, 1, 6]]))
+        return np.asarray(np.sqrt(np.diag(self.surface.covariance)[_SPOT]))
 
 
 _Block = tuple[_Sighting, ...]
@@ -162,6 +167,7 @@ class JoinedViews:
             return self._one.rejected(GraphStatus.OCCLUDED, _GLIMPSES)
         if not found:
             return self._one.rejected(*judge_empty(occlusion, config))
+        _check_offset(found)
         main = next(iter(views))
         observation = replace(views[main].observation, camera=self._camera)
         segments = views[main].seen.segments
@@ -285,6 +291,36 @@ def _fused(block: _Block) -> BlockSurface:
         seen_low=min(one.surface.seen_low for one in block),
         sharp=all(one.surface.sharp for one in used),
     )
+
+
+def _check_offset(found: Sequence[_Block]) -> None:
+    """Raises ContradictionError if one camera sees all blocks beside where another one does.
+
+    The offset is that of least Σ (dᵢ - t)ᵀ Wᵢ (dᵢ - t), Wᵢ⁻¹ the covariance of a difference dᵢ, so
+    that blocks of which each camera sees a part tell together what none of them does.
+    """
+    pairs: dict[tuple[str, str], list[tuple[_Sighting, _Sighting]]] = {}
+    for block in found:
+        for one, other in combinations(block, 2):
+            pairs.setdefault((one.camera, other.camera), []).append((one, other))
+    for (camera, another), both in pairs.items():
+        apart = np.array([other.spot - one.spot for one, other in both])
+        rows = np.ix_(_SPOT, _SPOT)
+        weights = np.array(
+            [
+                np.linalg.inv(one.surface.covariance[rows] + other.surface.covariance[rows])
+                for one, other in both
+            ]
+        )
+        total = weights.sum(axis=0)
+        offset = np.linalg.solve(total, np.einsum("bij,bj->i", weights, apart))
+        far = float(np.linalg.norm(offset))
+        if far > OFFSET and offset @ total @ offset > DEVIATIONS**2:
+            names = ", ".join(sorted(one.item.name for one, _ in both))
+            raise ContradictionError(
+                f"{names} for {another} are {1000 * far:.0f} mm from where {camera} sees them; "
+                f"check {camera}/extrinsics and {another}/extrinsics"
+            )
 
 
 def _turned_like(surface: BlockSurface, like: BlockSurface) -> tuple[Array, Array]:
