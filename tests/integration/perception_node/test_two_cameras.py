@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -11,10 +12,12 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from tamp_interfaces.msg import SceneGraph
 from tamp_runtime.messages.scene_graph import graph_from_message
+from tamp_runtime.qos import NEWEST
 
 from perception_node.node import PerceptionNode
 from scene_graph import Stacks
 from sim_node import World, parse_scene
+from sim_node.node import SimNode
 
 SCENE = """
 places: [[0.58, -0.15], [0.58, 0.0], [0.58, 0.15], [0.42, -0.15], [0.42, 0.0], [0.42, 0.15]]
@@ -84,3 +87,25 @@ def test_what_two_cameras_see_is_joined_until_one_falls_silent(
 
     ros_context.wait_until(is_back, what="a graph of both again")
     assert not both[-1].message
+
+
+def test_the_simulators_camera_goes_where_the_hidden_block_is_seen(
+    ros_context: Any, tmp_path: Path
+) -> None:
+    # Beside the first one it sees no more than that.
+    scene = tmp_path / "beside.yaml"
+    scene.write_text(SCENE.replace("[0.8, -1.05, 0.75]", "[1.44, 0.03, 0.4]"))
+    layout = [",".join(stack) for stack in HIDING]
+    places = [value for place in parse_scene(SCENE).stack_positions for value in map(float, place)]
+    simulator = {"scene": str(scene), "layout": layout}
+    perception = {"cameras": ["camera", "side"], "stack_positions": places, "use_sim_time": True}
+    for kind, told in ((SimNode, simulator), (PerceptionNode, perception)):
+        overrides = [Parameter(name, value=value) for name, value in told.items()]
+        ros_context.add(kind(context=ros_context.context, parameter_overrides=overrides))
+    node = ros_context.add(Node("listener", context=ros_context.context))
+    graphs: list[SceneGraph] = []
+    node.create_subscription(SceneGraph, "scene_graph", graphs.append, NEWEST)
+    ros_context.wait_until(
+        lambda: graphs and graphs[-1].status == SceneGraph.CONFIDENT, what="a view that shows all"
+    )
+    assert graph_from_message(graphs[-1]).stacks() == HIDING

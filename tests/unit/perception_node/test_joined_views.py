@@ -13,6 +13,7 @@ from seen_worlds import PERCEPTION, put
 
 from perception_node import Observation, PerceptionConfig, PinholeCamera
 from perception_node.joined_views import JoinedViews
+from perception_node.next_view import next_view
 from scene_graph import GraphStatus, Stacks
 from sim_node import World, parse_scene, true_scene_graph
 
@@ -28,9 +29,16 @@ HIDING: Stacks = ((), TOWER, (), (), ("yellow_box",), ())
 
 
 @pytest.fixture(scope="module")
-def rows() -> Iterator[World]:
+def built() -> Iterator[World]:
     with World(parse_scene(SCENE)) as world:
         yield world
+
+
+@pytest.fixture
+def rows(built: World) -> World:
+    side = parse_scene(SCENE).cameras[1]
+    built.move_camera(1, side.position_world, side.target_world)
+    return built
 
 
 def joined() -> JoinedViews:
@@ -130,3 +138,21 @@ def test_a_picture_that_cannot_be_used_is_told_and_done_without(rows: World) -> 
     assert "side: the picture is black" in both.message
     views_ = {name: replace(item, rgb=np.zeros_like(item.rgb)) for name, item in seen.items()}
     assert joined().perceive(views_).status is GraphStatus.BAD_IMAGE
+
+
+def test_the_view_that_is_asked_for_settles_what_is_hidden(rows: World) -> None:
+    rows.reset(HIDING)
+    rows.move_camera(1, (1.44, 0.03, 0.4), (0.5, 0.0, 0.1))
+    seen = views(rows)
+    before = joined().perceive(seen)
+    assert before.status is GraphStatus.HIDDEN
+    camera = seen["side"].camera
+    assert camera is not None
+    asked = next_view(before.graph, camera, PerceptionConfig(stack_positions=PLACES))
+    assert asked is not None
+    position, forward = asked.position_world, asked.world_from_optical[:3, 2]
+    rows.move_camera(1, tuple(position), tuple(position + forward))
+    after = joined().perceive(views(rows))
+    assert after.status is GraphStatus.CONFIDENT, after.message
+    assert after.graph.relations == true_scene_graph(rows).relations
+    assert next_view(after.graph, asked, PerceptionConfig(stack_positions=PLACES)) is None

@@ -10,13 +10,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
 import torch
+from geometry_msgs.msg import PoseStamped
+from numpy.typing import NDArray
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 from std_srvs.srv import Trigger
-from tamp_interfaces.msg import SceneGraph
+from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_interfaces.srv import ImageToSceneGraph
 from tamp_runtime.machine_code import written_below
 from tamp_runtime.messages.images import (
@@ -36,16 +39,23 @@ try:
 except ImportError:  # not among the PyPI packages
     TFMessage = None
 
-from scene_graph import GraphStatus
+from scene_graph import GraphStatus, SceneGraph
 
 from .alike import Alike
+from .camera import PinholeCamera
 from .camera_input import CameraInput
-from .conversions import frame_pose_from_message, markers_from_graph, perceived_to_message
+from .conversions import (
+    frame_pose_from_message,
+    markers_from_graph,
+    perceived_to_message,
+    pose_to_message,
+)
 from .drawing import draw_scene_graph
 from .errors import BadImageError, DatasetError
 from .frame_pairing import StampedSet
 from .joined_views import JoinedViews
 from .moments import Moments
+from .next_view import next_view
 from .observation import Observation
 from .parameters import FOUND, PARAMETERS, config_from_parameters
 from .pipeline import Perceived, Perception
@@ -81,6 +91,9 @@ class PerceptionNode(Node):
         scene_graph/image (sensor_msgs/Image): the camera image with the graph drawn in, in the
             frame of the camera image
         scene_graph/markers (visualization_msgs/MarkerArray)
+        NAME/view_request (geometry_msgs/PoseStamped), of the last of several cameras: where its
+            optical frame would have to be for it to see what is hidden from all of them, if anybody
+            listens, as one who moves that camera does
         diagnostics (diagnostic_msgs/DiagnosticArray): that it lives; a second one is noticed
     Services:
         image_to_scene_graph (tamp_interfaces/ImageToSceneGraph): interprets a goal image
@@ -108,6 +121,8 @@ class PerceptionNode(Node):
         self._recorder = _recorder(self._values["record"])
         self._status: GraphStatus | None = None
         self._told = ""
+        self._last_seen: PinholeCamera | None = None
+        self._asked: NDArray[np.float64] | None = None
         names = self._values["cameras"]
         self._joined = JoinedViews(self._kept.perception, names[0]) if names[1:] else None
         self._create_interfaces()
@@ -117,7 +132,7 @@ class PerceptionNode(Node):
         )
 
     def _create_interfaces(self) -> None:
-        self._graphs = self.create_publisher(SceneGraph, "scene_graph", NEWEST)
+        self._graphs = self.create_publisher(SceneGraphMsg, "scene_graph", NEWEST)
         self._drawings = self.create_publisher(Image, "scene_graph/image", SENSOR_DATA)
         self._markers = self.create_publisher(MarkerArray, "scene_graph/markers", RELIABLE)
         frames = MutuallyExclusiveCallbackGroup()
@@ -128,6 +143,11 @@ class PerceptionNode(Node):
             for name in self._values["cameras"]
         }
         self._main = next(iter(self._cameras.values()))
+        self._last_camera = self._values["cameras"][-1]
+        self._views = None
+        if self._joined is not None:
+            topic = f"{self._last_camera}/view_request"
+            self._views = self.create_publisher(PoseStamped, topic, NEWEST)
         if TFMessage is not None:
             self.create_subscription(
                 TFMessage, "/tf_static", self._on_frames, STATUS, callback_group=frames
@@ -221,6 +241,7 @@ class PerceptionNode(Node):
                 perceived, message="; ".join(filter(None, (perceived.message, note)))
             )
         self._publish(perceived, header, frame.arrival)
+        self._ask_for_view(perceived.graph, header)
         rgb = main.picture
         if rgb is not None and self.context.ok() and self._drawings.get_subscription_count():
             drawing = draw_scene_graph(rgb, perceived)
@@ -244,6 +265,8 @@ class PerceptionNode(Node):
         if not observations:
             raise BadImageError("; ".join(bad))
         main = next(iter(observations.values()))
+        last = observations.get(self._last_camera)
+        self._last_seen = None if last is None else last.camera
         if self._joined is None:
             perceived = self._kept.perceive(main)
         else:
@@ -265,6 +288,21 @@ class PerceptionNode(Node):
             )
             perceived = replace(perceived, message=perceived.message + hint)
         return replace(perceived, message="; ".join(filter(None, (perceived.message, *bad))))
+
+    def _ask_for_view(self, graph: SceneGraph, header: Header) -> None:
+        """Says from where the last camera would see what is hidden, whenever that is elsewhere."""
+        camera = self._last_seen
+        if camera is None or self._views is None or not self._views.get_subscription_count():
+            return
+        view = next_view(graph, camera, self._kept.perception.config)
+        if view is None or np.allclose(
+            view.world_from_optical, camera.world_from_optical, atol=0.01
+        ):
+            return
+        if self._asked is None or not np.allclose(self._asked, view.world_from_optical, atol=0.01):
+            self.get_logger().info(f"{self._last_camera} is asked to look at what is hidden")
+        self._asked = view.world_from_optical
+        self._views.publish(PoseStamped(header=header, pose=pose_to_message(self._asked)))
 
     def _record(self, observation: Observation, perceived: Perceived) -> None:
         if self._recorder is None:
