@@ -157,6 +157,8 @@ def test_a_camera_that_was_moved_sees_what_one_that_was_always_there_sees() -> N
         with pytest.raises(SceneError):  # no place is seen from there
             world.move_camera(0, (0.5, 0.0, 0.5), (0.5, 0.0, 1.5))
         world.move_camera(0, there.position_world, there.target_world)
-        for seen in (world.render(), (world.reset(LAYOUT, 3), world.render())[1]):
+        moved = world.render()
+        world.reset(LAYOUT, 3)  # after which it is still there
+        for seen in (moved, world.render()):
             np.testing.assert_array_equal(seen.rgb, expected.rgb)
             np.testing.assert_array_equal(seen.depth, expected.depth)
