@@ -43,7 +43,7 @@ from scene_graph import GraphStatus, SceneGraph
 
 from .alike import Alike
 from .camera import PinholeCamera
-from .camera_input import CameraInput
+from .camera_topics import CameraTopics
 from .conversions import (
     frame_pose_from_message,
     markers_from_graph,
@@ -139,7 +139,7 @@ class PerceptionNode(Node):
         tolerance = round(1e9 * self._values["pairing_tolerance"])
         self._moments = Moments(self._values["cameras"], tolerance, time.perf_counter())
         self._cameras = {
-            name: CameraInput(self, name, self._values, frames, self._on_frame)
+            name: CameraTopics(self, name, self._values, frames, self._on_frame)
             for name in self._values["cameras"]
         }
         self._main = next(iter(self._cameras.values()))
@@ -174,7 +174,7 @@ class PerceptionNode(Node):
         for camera in self._cameras.values():
             camera.calibration.add_frames(map(frame_pose_from_message, message.transforms))
 
-    def _on_frame(self, camera: CameraInput, frame: StampedSet) -> None:
+    def _on_frame(self, camera: CameraTopics, frame: StampedSet) -> None:
         moment = self._moments.add(camera.name, frame, time.perf_counter())
         if moment is not None:
             self._interpret(moment)

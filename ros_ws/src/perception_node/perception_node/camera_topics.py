@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What one camera publishes, up to observations."""
+"""The topics of one camera, up to observations."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ UNUSED: Final[dict[str, Collection[str]]] = {
 }
 
 
-class CameraInput:
+class CameraTopics:
     """The subscriptions of one camera, and what is known of it.
 
     Attributes:
@@ -78,7 +78,7 @@ class CameraInput:
         name: str,
         values: dict[str, Any],
         group: CallbackGroup,
-        on_frame: Callable[[CameraInput, StampedSet], None],
+        on_frame: Callable[[CameraTopics, StampedSet], None],
     ) -> None:
         self.name = name
         self.calibration = Calibration(values["rectified"], values["world_frame"])
