@@ -6,7 +6,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -259,6 +259,46 @@ def two_rows(blocks: int) -> Callable[[int], Drawn]:
         layout = rows.layout([object_name(color, BOX) for color in colors], rng)
         scene = {"places": [list(place) for place in places], "cameras": [rows.view(rng)]}
         return Drawn(seed, layout, scene)
+
+    return draw
+
+
+#: A second camera that looks from the side, and from higher up.
+ASIDE: Final[Mapping[str, Any]] = {
+    "name": "side", "position": [0.8, -1.05, 0.75], "target": [0.5, 0.0, 0.1], "vertical_fov": 0.6,
+}  # fmt: skip
+
+
+def low_rows(blocks: int) -> Callable[[int], Drawn]:
+    """Two rows as :func:`two_rows` has them, the first camera so low that they hide one another."""
+    draw = two_rows(blocks)
+
+    def low(number: int) -> Drawn:
+        drawn = draw(number)
+        scene = dict(drawn.scene or {})
+        camera = {"name": "camera", "position": [1.45, 0.0, 0.4], "target": [0.5, 0.0, 0.08]}
+        return replace(drawn, scene=scene | {"cameras": [camera, dict(ASIDE)]})
+
+    return low
+
+
+def behind_a_thing(blocks: int) -> Callable[[int], Drawn]:
+    """Random states of a row, a thing before the first camera that hides part of a stack."""
+
+    def draw(number: int) -> Drawn:
+        seed = FIRST_SEED + number
+        rng = np.random.default_rng([seed, 16])
+        camera = {"name": "camera"}
+        x, y = rng.uniform(0.72, 0.8), rng.uniform(-0.18, 0.18)
+        width, height = rng.uniform(0.03, 0.06), rng.uniform(0.08, 0.16)
+        thing = {
+            "name": "thing", "shape": str(rng.choice([BOX, CYLINDER])),
+            "size": [round(float(value), 4) for value in (width, width, height)],
+            "position": [round(float(x), 4), round(float(y), 4)],
+            "color": [round(float(value), 3) for value in rng.uniform(0.1, 0.9, 3)],
+        }  # fmt: skip
+        scene = {"cameras": [camera, dict(ASIDE)], "obstacles": [thing]}
+        return Drawn(seed, random_layout(seed, blocks), scene)
 
     return draw
 

@@ -32,10 +32,12 @@ from perception_node import (
     PerceptionConfig,
     Segmenter,
 )
+from perception_node.joined_views import JoinedViews
 from perception_node.segment import RGB
 from perception_node.visual_module.coordinates import Locator
 from scene_graph import UNKNOWN, GraphStatus, Relation, SceneGraph, SceneObject
 from sim_node import Frame, World, random_arrangement, sense, true_scene_graph
+from sim_node.scene.cameras import FIRST
 
 #: Every set is held to no more than this share of graphs that are accepted and wrong.
 ACCEPTED_WRONG = 0.001
@@ -106,11 +108,15 @@ def answer_of(drawn: Drawn, item: PictureSet, locator: Locator, world: World) ->
     observation = view.observation(
         frame.rgb, None if alone else frame.labels, None if alone else frame.depth
     )
+    others = {}
+    for number, camera in list(enumerate(world.config.cameras))[1 : item.cameras]:
+        taken = sense(world.render(number), sensor, (drawn.seed, number, 0))
+        others[camera.name] = view_of(camera, taken).observation(taken.rgb, None, taken.depth)
     if item.damage is not None:
         rng = np.random.default_rng([drawn.seed, 13])
         earlier = functools.partial(_other_state, world, drawn)
         observation = item.damage(observation, Shot(exact.labels, earlier, rng))
-    answer, seen = answer_to(drawn.seed, observation, truth, item, locator)
+    answer, seen = answer_to(drawn.seed, observation, truth, item, locator, others)
     if answer.hides:
         right = is_partly_right(seen.graph, truth, frame, world.config.camera)
         answer = replace(answer, right=right)
@@ -118,11 +124,19 @@ def answer_of(drawn: Drawn, item: PictureSet, locator: Locator, world: World) ->
 
 
 def answer_to(
-    seed: int, observation: Observation, truth: SceneGraph, item: PictureSet, locator: Locator
+    seed: int,
+    observation: Observation,
+    truth: SceneGraph,
+    item: PictureSet,
+    locator: Locator,
+    others: Mapping[str, Observation] | None = None,
 ) -> tuple[Answer, Perceived]:
     """What perception says of a picture, wherever it comes from.
 
     Blocks by name are left out, and where blocks hide others whether that is right.
+
+    Args:
+        others: what other cameras see, by their names.
     """
     config = PerceptionConfig(
         mask_source=item.mask_source,
@@ -133,15 +147,18 @@ def answer_to(
         search = replace(config.search, count=item.found)
         config = replace(config, stack_positions=(), search=search)
     perception = Perception(locator, config)
+    joined = JoinedViews(perception, FIRST)
     start = time.perf_counter()
-    if item.found is None:
+    if others:
+        seen = joined.perceive({FIRST: observation, **others})
+    elif item.found is None:
         seen = perception.perceive(observation)
     else:
         _, seen = perception.find_places(observation)
     seconds = time.perf_counter() - start
     if item.found is not None:
         right = on_found_places(truth, seen.graph)
-    others = [
+    baselines = [
         other.perceive(observation).graph.relations
         for other in _baselines(item, perception).values()
     ]
@@ -158,7 +175,7 @@ def answer_to(
         tuple(float(block.confidence) for block in seen.graph.objects if block.label),
         seconds,
         _errors(seen.graph, truth) if confident and item.damage is None else (),
-        baselines=tuple(other == truth.relations for other in others),
+        baselines=tuple(other == truth.relations for other in baselines),
         probability=seen.probability,
         evidence=seen.evidence,
         hides=hides,
@@ -272,6 +289,11 @@ def rows_of(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
         Row(item.what, "picture to graph, median", float(np.median(seconds)), "ms", n,
             (float(seconds.min()), float(seconds.max()))),
     ]  # fmt: skip
+    if item.cameras:
+        whole = sum(answer.right and answer.status == "CONFIDENT" for answer in answers)
+        rows.append(
+            Row(item.what, "right, and nothing hidden", whole / n, "", n, wilson_interval(whole, n))
+        )
     if hiding := sum(answer.hides for answer in answers):
         rows.append(Row(item.what, "of these with hidden places", hiding / n, "", n))
     if off := [error for answer in answers for error in answer.place_errors]:

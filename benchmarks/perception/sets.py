@@ -18,9 +18,11 @@ from perception.damages import (
 from perception.scenes import (
     Drawn,
     any_number,
+    behind_a_thing,
     beside_the_picture,
     between_colors,
     colored,
+    low_rows,
     plain,
     shifted_stacks,
     solids,
@@ -43,6 +45,8 @@ HALF_HIDDEN: Final = "half of one block lost"
 UNTOLD: Final = ("mirrored", "depth_frozen", "color_frozen")
 #: What is done with masks where depth is there as well.
 SNAPPED: Final = "masks are made those of what is found in colour and depth: little is left"
+#: What is looked through, where it is asked how much more two cameras see.
+HOW: Final = {1: "the first of two cameras", 2: "from the front and from the side"}
 _VGA: Final[Mapping[str, Any]] = {"width": 640, "height": 480}
 #: A lens as those of cameras that see 60 degrees across, nearer than usual, so that blocks are in
 #: more than the middle of the picture; barrel distortion moves its corners by 47 px, blocks by 7.
@@ -80,6 +84,7 @@ class PictureSet:
         note: what has to be known to read the rows.
         found: how many places are to be found, 0: as many as stacks; None: they are given.
         between: whether colours may be in doubt, and what is published of that is counted.
+        cameras: how many are looked through, where it is asked how much more several see; else 0.
         poses: bounds on median and 99th percentile of the centre's error [mm], median of yaw's [°].
     """
 
@@ -102,6 +107,7 @@ class PictureSet:
     told: bool = True
     between: bool = False
     found: int | None = None
+    cameras: int = 0
     note: str | None = None
 
 
@@ -225,6 +231,14 @@ SETS: Final = (
         "two_rows_noisy", "two rows, 4 objects on 6 places, depth of a real camera", two_rows(4),
         1000, _REAL, graph=0.97,
     ),
+    *(PictureSet(
+        f"{name}_{count}_cameras" if count > 1 else f"{name}_1_camera",
+        f"{what}, {count} camera{'s' * (count > 1)}", draw, 500, _REAL, cameras=count, told=count > 1,
+        graph=0.97 if count > 1 else None, note=f"real depth; {HOW[count]}",
+    ) for name, what, draw in (
+        ("rows", "two rows from low, 6 objects", low_rows(6)),
+        ("thing", "6 objects, a thing before them", behind_a_thing(6)),
+    ) for count in (1, 2)),
     _of_color_alone("six", "6 objects", plain(6), 0.97),
     _of_color_alone(
         "hard", "cubes 3-6 cm, yaw to 45°, clutter, 640x480, camera ±20°",

@@ -18,6 +18,7 @@ from scene_graph import Stacks
 from sim_node.camera import Frame
 from sim_node.conversions import camera_messages, extrinsics_message
 from sim_node.scene import CameraConfig
+from sim_node.scene.cameras import FIRST
 
 #: Scenes that are shown.
 TOWERS: Stacks = (("red_box", "blue_box"), ("green_box",), ("yellow_box", "purple_box"))
@@ -43,6 +44,7 @@ class FakeCamera:
 
     Args:
         topics: what is published of a frame; the labels only where a detector is there, too.
+        config: the camera, whose name its topics begin with.
     """
 
     def __init__(
@@ -52,25 +54,31 @@ class FakeCamera:
         images: QoSProfile = NEWEST,
         extrinsics: QoSProfile = LATCHED,
         topics: Collection[str] = WITHOUT_LABELS,
+        config: CameraConfig = DEFAULT_CAMERA,
     ) -> None:
-        self.node = node
+        self.node, self._config = node, config
         self.graphs: list[SceneGraph] = []
         self._wait_until = ros_context.wait_until
-        self._seconds = 100
+        self.seconds = 100
         self.publishers = {
-            topic: node.create_publisher(TOPICS[topic], topic, images) for topic in topics
+            topic: node.create_publisher(
+                TOPICS[topic], topic.replace(FIRST, config.name, 1), images
+            )
+            for topic in topics
         }
-        self._extrinsics = node.create_publisher(TransformStamped, "camera/extrinsics", extrinsics)
+        self._extrinsics = node.create_publisher(
+            TransformStamped, f"{config.name}/extrinsics", extrinsics
+        )
         node.create_subscription(SceneGraph, "scene_graph", self.graphs.append, NEWEST)
 
     @property
     def stamp(self) -> Time:
         """Of the newest frame."""
-        return Time(sec=self._seconds)
+        return Time(sec=self.seconds)
 
     def calibrate(self) -> None:
         """Publishes where the camera is."""
-        self._extrinsics.publish(extrinsics_message(CameraConfig(), Time()))
+        self._extrinsics.publish(extrinsics_message(self._config, Time()))
 
     def calibrate_and_show(self, frame: Frame, config: CameraConfig = DEFAULT_CAMERA) -> SceneGraph:
         """The first graph after the extrinsics have arrived."""
@@ -86,7 +94,7 @@ class FakeCamera:
 
     def messages(self, frame: Frame, config: CameraConfig = DEFAULT_CAMERA) -> dict[str, Any]:
         """Everything of a frame by topic, the labels too, with a new stamp."""
-        self._seconds += 1
+        self.seconds += 1
         return dict(zip(TOPICS, camera_messages(frame, config, self.stamp)))
 
     def publish(self, messages: Mapping[str, Any]) -> None:
@@ -98,7 +106,7 @@ class FakeCamera:
         """Publishes messages of the newest stamp, and waits for the graph of it."""
         self.publish(messages)
         self._wait_until(
-            lambda: self.graphs and self.graphs[-1].header.stamp.sec == self._seconds,
+            lambda: self.graphs and self.graphs[-1].header.stamp.sec == self.seconds,
             what="a graph of the newest frame",
         )
         return self.graphs[-1]

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pybullet
@@ -15,7 +16,7 @@ from sim_peer import edges, exact_ray_cast, ray_cast, tiny_picture
 from sim_node.camera import Frame
 from sim_node.layouts import random_layout
 from sim_node.rendering import surfaces
-from sim_node.scene import CameraConfig, SceneConfig
+from sim_node.scene import CameraConfig, SceneConfig, SceneError
 from sim_node.world import World
 
 LAYOUT = (("red_box", "blue_cylinder"), ("green_box", "yellow_box"), ("purple_sphere",))
@@ -143,3 +144,21 @@ def test_bodies_that_look_as_others_did_get_the_surfaces_of_those(world: World) 
     assert surfaces._surface.cache_info().currsize == made.currsize
     assert surfaces._surface.cache_info().misses == made.misses
     assert all((pictures[0].rgb == other.rgb).all() for other in pictures[1:])
+
+
+def test_a_camera_that_was_moved_sees_what_one_that_was_always_there_sees() -> None:
+    here, there = CAMERAS[0], CAMERAS[1]
+    there = replace(here, position_world=there.position_world, target_world=there.target_world)
+    with World(SceneConfig(cameras=(there,))) as world:
+        world.reset(LAYOUT, 3)
+        expected = world.render()
+    with World(SceneConfig(cameras=(here,))) as world:
+        world.reset(LAYOUT, 3)
+        with pytest.raises(SceneError):  # no place is seen from there
+            world.move_camera(0, (0.5, 0.0, 0.5), (0.5, 0.0, 1.5))
+        world.move_camera(0, there.position_world, there.target_world)
+        moved = world.render()
+        world.reset(LAYOUT, 3)  # after which it is still there
+        for seen in (moved, world.render()):
+            np.testing.assert_array_equal(seen.rgb, expected.rgb)
+            np.testing.assert_array_equal(seen.depth, expected.depth)

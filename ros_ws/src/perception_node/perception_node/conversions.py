@@ -5,7 +5,10 @@ from __future__ import annotations
 
 from typing import Final
 
+import numpy as np
 from geometry_msgs.msg import Point, Pose, Quaternion, TransformStamped, Vector3
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 from sensor_msgs.msg import CameraInfo
 from std_msgs.msg import ColorRGBA, Header
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
@@ -54,6 +57,13 @@ def frame_pose_from_message(message: TransformStamped) -> FramePose:
         (shift.x, shift.y, shift.z),
         (turn.x, turn.y, turn.z, turn.w),
     )
+
+
+def pose_to_message(pose: NDArray[np.float64]) -> Pose:
+    """Of a homogeneous matrix, shape (4, 4) [m]."""
+    x, y, z = pose[:3, 3].tolist()
+    qx, qy, qz, qw = Rotation.from_matrix(pose[:3, :3]).as_quat().tolist()
+    return Pose(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw))
 
 
 def perceived_to_message(

@@ -30,6 +30,8 @@ NEARER: Final = 0.02
 REACH: Final = 0.05
 #: Lower than this over the table is the table [m].
 MIN_HEIGHT: Final = 0.003
+#: Higher than this over the table something is, as noise of depth is lower [m].
+THING_HEIGHT: Final = 0.01
 #: A block and what covers it are this near to one another in the picture [px].
 RIM: Final = 3
 #: Of a block that is covered at more of its width below, the lower end is known to this only, as a
@@ -113,14 +115,23 @@ class Seen:
         )
 
 
-def measure_seen(observation: Observation, segments: Segments, places: tuple[Place, ...]) -> Seen:
+def measure_seen(
+    observation: Observation,
+    segments: Segments,
+    places: tuple[Place, ...],
+    by_things: bool = False,
+) -> Seen:
     """Measures the blocks; those that are covered and cannot be measured are only glimpsed.
+
+    Args:
+        by_things: whether what is no block covers blocks, too.
 
     Raises:
         BadImageError: as :func:`.blocks.measure` of a block that is not covered.
     """
     segments, glimpses = _with_slivers(observation, segments, places)
-    covered = _covered(observation, segments)
+    things = _things(observation, segments, places) if by_things else None
+    covered = _covered(observation, segments, things)
     while True:
         try:
             surfaces = measure(observation, segments)
@@ -143,7 +154,7 @@ def measure_seen(observation: Observation, segments: Segments, places: tuple[Pla
             if pair is None:
                 surfaces = tuple(
                     _without_low_end(surface)
-                    if item.label in covered and _is_cut_below(item, segments, observation)
+                    if item.label in covered and _is_cut_below(item, segments, observation, things)
                     else surface
                     for item, surface in zip(segments, surfaces)
                 )
@@ -172,7 +183,9 @@ def uncovered(
     return rgb, replace(seen.segments, blocks=tuple(found))
 
 
-def _is_cut_below(item: Segment, segments: Segments, observation: Observation) -> bool:
+def _is_cut_below(
+    item: Segment, segments: Segments, observation: Observation, things: Mask | None
+) -> bool:
     """Whether something nearer covers where a block ends below, for much of its width."""
     depth = _known_depth(observation)
     columns = np.flatnonzero(item.part.any(axis=0))
@@ -182,7 +195,8 @@ def _is_cut_below(item: Segment, segments: Segments, observation: Observation) -
         rows = np.minimum(lowest + down, item.part.shape[0] - 1)
         other = segments.label_image[rows, columns]
         nearer = depth[rows, columns] < depth[lowest, columns] - NEARER
-        cut |= nearer & (other > 0) & (other != item.label)
+        covers = (other > 0) & (other != item.label)
+        cut |= nearer & (covers if things is None else covers | things[rows, columns])
     return bool(np.count_nonzero(cut) > CUT * len(columns))
 
 
@@ -265,8 +279,25 @@ def _only(segments: Segments, kept: list[bool]) -> Segments:
     return replace(segments, blocks=blocks)
 
 
-def _covered(observation: Observation, segments: Segments) -> frozenset[int]:
-    """Labels of the blocks beside whose pixels a block of another stack is seen that is nearer."""
+def _things(observation: Observation, segments: Segments, places: tuple[Place, ...]) -> Mask:
+    """Which pixels show something that is neither a block nor the table."""
+    depth, camera = _known_depth(observation), observation.camera
+    assert camera is not None
+    across, down = camera.rays_apart(np.s_[0 : depth.shape[0], 0 : depth.shape[1]])
+    with np.errstate(invalid="ignore"):
+        height = camera.position_world[2] + (down[:, None, 2] + across[None, :, 2]) * depth
+    floor = min(place.position_world[2] for place in places)
+    low = height < floor + THING_HEIGHT
+    return np.asarray((segments.label_image == 0) & np.isfinite(depth) & ~low)
+
+
+def _covered(
+    observation: Observation, segments: Segments, things: Mask | None = None
+) -> frozenset[int]:
+    """Labels of the blocks beside whose pixels something is seen that is nearer.
+
+    A block of another stack, or one of the things.
+    """
     depth = _known_depth(observation)
     found = []
     middles = {item.label: _middle(item.part, observation) for item in segments}
@@ -282,7 +313,10 @@ def _covered(observation: Observation, segments: Segments) -> frozenset[int]:
             for label, middle in middles.items()
             if np.hypot(*(middle - middles[item.label])) > APART
         ]
-        beside = (around > 0.0) & ~part & np.isin(labels, away)
+        covers = np.isin(labels, away)
+        if things is not None:
+            covers |= things[box]
+        beside = (around > 0.0) & ~part & covers
         if np.count_nonzero(beside & (depth[box] < around - NEARER)) >= MIN_EDGE:
             found.append(item.label)
     return frozenset(found)

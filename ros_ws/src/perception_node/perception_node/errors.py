@@ -22,6 +22,10 @@ class UnmeasuredError(BadImageError):
         self.index = index
 
 
+class ContradictionError(PerceptionError):
+    """Views of two cameras that cannot be of one scene."""
+
+
 class WeightsError(PerceptionError):
     """A weights file that is missing, damaged or not ours; ``path`` is the file."""
 
@@ -44,3 +48,8 @@ class HiddenPlacesError(PlacesError):
 
 class DatasetError(PerceptionError):
     """A data set that is missing or not as :mod:`perception_node.training.dataset` describes."""
+
+
+def with_topics_of(camera: str, sentence: str) -> str:
+    """A sentence about the topics of ``camera``, told of those of another one."""
+    return sentence.replace("camera/", f"{camera}/")

@@ -12,10 +12,8 @@ from scene_graph import BOX, HIDDEN, Place, SceneObject, base_name, hidden_name
 from .blocks import Blocks, MeasuredBlock
 from .config import PerceptionConfig
 from .covered import Glimpse
-from .observation import Observation
 from .places import Standing
-from .places.hidden import Cells, cells_over
-from .segment import Segments
+from .places.hidden import Cells
 
 #: Width of what stands for hidden blocks [m].
 WIDTH: Final = 0.06
@@ -54,8 +52,7 @@ class Hidden:
 
 
 def find_hidden(
-    observation: Observation,
-    segments: Segments,
+    cells: Sequence[Cells],
     standing: Standing,
     blocks: Blocks,
     glimpses: Sequence[Glimpse],
@@ -64,14 +61,14 @@ def find_hidden(
     """Where blocks may be that are not seen, from the first place to the last, from the bottom.
 
     Nothing is said of what is under a block that is seen to be in the air.
+
+    Args:
+        cells: over each place of ``standing``.
     """
     if not blocks.measured or not standing.places:
         return ()
-    every = cells_over(
-        observation, segments, standing.places, config.column_half_width, config.column_height
-    )
     found: list[Hidden] = []
-    for place, stack, cells in zip(standing.places, standing.stacks, every):
+    for place, stack, over in zip(standing.places, standing.stacks, cells):
         here = [item for item in glimpses if item.place == place.index]
         level_of = place.position_world[2]
         for level, item in enumerate(stack):
@@ -80,15 +77,15 @@ def find_hidden(
             among = any(level_of - config.limits.gap < one.high < pose.bottom + config.limits.gap
                         for one in here)  # fmt: skip
             if gap > config.limits.gap and (
-                among or _hides_all(cells, level_of, pose.bottom, config.smallest_block)
+                among or _hides_all(over, level_of, pose.bottom, config.smallest_block)
             ):
                 found.append(Hidden(place.index, level, level_of, pose.bottom))
             level_of = pose.top
         glimpsed = max((item.high for item in here), default=-1.0)
         if glimpsed > level_of + config.limits.gap or _hides_next(
-            cells, level_of, place, blocks.measured[stack[-1]] if stack else None, config
+            over, level_of, place, blocks.measured[stack[-1]] if stack else None, config
         ):
-            up = level_of + cells.hidden_above(level_of, config.smallest_block)
+            up = level_of + over.hidden_above(level_of, config.smallest_block)
             found.append(Hidden(place.index, len(stack), level_of, max(up, glimpsed)))
     return tuple(found)
 

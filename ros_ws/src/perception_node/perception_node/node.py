@@ -5,36 +5,35 @@ from __future__ import annotations
 
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
 import cv2
+import numpy as np
 import torch
-from geometry_msgs.msg import TransformStamped
+from geometry_msgs.msg import PoseStamped
+from numpy.typing import NDArray
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
-from sensor_msgs.msg import CameraInfo, Image
+from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 from std_srvs.srv import Trigger
-from tamp_interfaces.msg import SceneGraph
+from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_interfaces.srv import ImageToSceneGraph
 from tamp_runtime.machine_code import written_below
 from tamp_runtime.memory import keep_freed_memory
 from tamp_runtime.messages.images import (
     ImageError,
     color_from_image,
-    depth_from_image,
     image_from_array,
     labels_from_image,
 )
-from tamp_runtime.messages.stamps import nanoseconds
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.presence import Presence
-from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE, SENSOR_DATA, STATUS
-from tamp_runtime.subscriptions import AdaptiveSubscription
+from tamp_runtime.qos import NEWEST, RELIABLE, SENSOR_DATA, STATUS
 from visualization_msgs.msg import MarkerArray
 
 try:
@@ -42,48 +41,32 @@ try:
 except ImportError:  # not among the PyPI packages
     TFMessage = None
 
-from scene_graph import GraphStatus
+from scene_graph import GraphStatus, SceneGraph
 
 from .alike import Alike
-from .calibration import Calibration, LensModel
-from .continuity import Continuity
+from .camera import PinholeCamera
+from .camera_topics import CameraTopics
 from .conversions import (
     frame_pose_from_message,
-    lens_from_message,
     markers_from_graph,
     perceived_to_message,
+    pose_to_message,
 )
 from .drawing import draw_scene_graph
 from .errors import BadImageError, DatasetError
-from .frame_pairing import FramePairing, StampedSet
+from .frame_pairing import StampedSet
+from .joined_views import JoinedViews
+from .moments import Moments
+from .next_view import next_view
 from .observation import Observation
 from .parameters import FOUND, PARAMETERS, config_from_parameters
 from .pipeline import Perceived, Perception
 from .places_kept import PlacesKept
-from .segment import RGB, RGBD, SEGMENTATION_TOPIC
+from .segment import RGB
 from .segment.rgb import network
 from .training.recording import Recorder
 from .visual_module.weights import DEFAULT_WEIGHTS, load_weights
 
-#: What makes pixels of the images of a frame.
-READERS: Final[dict[str, Callable[[Image], Any]]] = {
-    "image": color_from_image,
-    "depth": depth_from_image,
-    "segmentation": labels_from_image,
-}
-#: The messages that make a frame; labels only where masks are given, depth where it is used.
-TOPICS: Final = {
-    "image": "camera/image_raw",
-    "depth": "camera/depth/image_raw",
-    "segmentation": "camera/segmentation",
-    "info": "camera/camera_info",
-}
-#: Those of them that are not heard, by mask_source.
-UNUSED: Final = {
-    RGBD: ("segmentation",),
-    SEGMENTATION_TOPIC: (),
-    RGB: ("segmentation", "depth"),
-}
 #: After this long without a complete frame, though images arrive, the reason is published [s].
 SILENCE: Final = 2.0
 #: Pictures that have been the same for so long may be an old one, sent again and again [s].
@@ -97,7 +80,8 @@ class PerceptionNode(Node):
         camera/image_raw, camera/depth/image_raw (sensor_msgs/Image), camera/camera_info
             (sensor_msgs/CameraInfo) and, where the parameter mask_source says so,
             camera/segmentation (sensor_msgs/Image), or no depth: paired by their stamps; only the
-            newest complete frame is interpreted
+            newest complete frame is interpreted. Of more cameras, those of the parameter cameras,
+            the same by their names; of each moment all are joined
         camera/extrinsics (geometry_msgs/TransformStamped), latched or sent again and again; these
             and the images are heard reliable or best effort, as they are published
         /tf_static (tf2_msgs/TFMessage), where there are such messages: leads to the camera's frame
@@ -109,6 +93,9 @@ class PerceptionNode(Node):
         scene_graph/image (sensor_msgs/Image): the camera image with the graph drawn in, in the
             frame of the camera image
         scene_graph/markers (visualization_msgs/MarkerArray)
+        NAME/view_request (geometry_msgs/PoseStamped), of the last of several cameras: where its
+            optical frame would have to be for it to see what is hidden from all of them, if anybody
+            listens, as one who moves that camera does
         diagnostics (diagnostic_msgs/DiagnosticArray): that it lives; a second one is noticed
     Services:
         image_to_scene_graph (tamp_interfaces/ImageToSceneGraph): interprets a goal image
@@ -134,18 +121,14 @@ class PerceptionNode(Node):
         )
         if self._values["mask_source"] == RGB:
             network()  # raises if its weights cannot be read: now, not at the first picture
-        unused = UNUSED[self._values["mask_source"]]
-        self._topics = {name: topic for name, topic in TOPICS.items() if name not in unused}
-        tolerance = round(1e9 * self._values["pairing_tolerance"])
-        self._pairing = FramePairing(tuple(self._topics), tolerance)
-        self._lens: LensModel | None = None
-        self._calibration = Calibration(self._values["rectified"], self._values["world_frame"])
-        self._continuity = Continuity()
         self._alike = Alike()
         self._recorder = _recorder(self._values["record"])
         self._status: GraphStatus | None = None
-        self._last_image = 0.0
-        self._incomplete_since: float | None = None
+        self._told = ""
+        self._last_seen: PinholeCamera | None = None
+        self._asked: NDArray[np.float64] | None = None
+        names = self._values["cameras"]
+        self._joined = JoinedViews(self._kept.perception, names[0]) if names[1:] else None
         self._create_interfaces()
         self.get_logger().info(
             f"masks from {self._values['mask_source']}, weights {weights} "
@@ -153,21 +136,22 @@ class PerceptionNode(Node):
         )
 
     def _create_interfaces(self) -> None:
-        self._graphs = self.create_publisher(SceneGraph, "scene_graph", NEWEST)
+        self._graphs = self.create_publisher(SceneGraphMsg, "scene_graph", NEWEST)
         self._drawings = self.create_publisher(Image, "scene_graph/image", SENSOR_DATA)
         self._markers = self.create_publisher(MarkerArray, "scene_graph/markers", RELIABLE)
         frames = MutuallyExclusiveCallbackGroup()
-        for stream, topic in self._topics.items():
-            kind = Image if stream in READERS else CameraInfo
-            AdaptiveSubscription(self, kind, topic, self._receiver(stream), NEWEST, frames)
-        AdaptiveSubscription(
-            self,
-            TransformStamped,
-            "camera/extrinsics",
-            self._on_extrinsics,
-            LATCHED,
-            frames,
-        )
+        tolerance = round(1e9 * self._values["pairing_tolerance"])
+        self._moments = Moments(self._values["cameras"], tolerance, time.perf_counter())
+        self._cameras = {
+            name: CameraTopics(self, name, self._values, frames, self._on_frame)
+            for name in self._values["cameras"]
+        }
+        self._main = next(iter(self._cameras.values()))
+        self._last_camera = self._values["cameras"][-1]
+        self._views = None
+        if self._joined is not None:
+            topic = f"{self._last_camera}/view_request"
+            self._views = self.create_publisher(PoseStamped, topic, NEWEST)
         if TFMessage is not None:
             self.create_subscription(
                 TFMessage, "/tf_static", self._on_frames, STATUS, callback_group=frames
@@ -187,31 +171,22 @@ class PerceptionNode(Node):
     def _parameters_changed(self, values: dict[str, Any]) -> None:
         self._values = {**self._values, **values}
         self._kept.configure(config_from_parameters(self._values))
-
-    def _on_extrinsics(self, message: TransformStamped) -> None:
-        self._calibration.place(frame_pose_from_message(message))
+        if self._joined is not None:
+            self._joined = self._joined.configured(self._kept.perception)
 
     def _on_frames(self, message: Any) -> None:
-        self._calibration.add_frames(map(frame_pose_from_message, message.transforms))
+        for camera in self._cameras.values():
+            camera.calibration.add_frames(map(frame_pose_from_message, message.transforms))
 
-    def _receiver(self, stream: str) -> Callable[[Any], None]:
-        def receive(message: Any) -> None:
-            self._last_image = time.perf_counter()
-            frame = self._pairing.add(
-                stream, nanoseconds(message.header.stamp), message, self._last_image
-            )
-            if frame is None:
-                self._incomplete_since = self._incomplete_since or self._last_image
-                return
-            self._incomplete_since = None
-            self._interpret(frame)
-
-        return receive
+    def _on_frame(self, camera: CameraTopics, frame: StampedSet) -> None:
+        moment = self._moments.add(camera.name, frame, time.perf_counter())
+        if moment is not None:
+            self._interpret(moment)
 
     def _on_find_places(
         self, _request: Trigger.Request, response: Trigger.Response
     ) -> Trigger.Response:
-        if self._kept.finds and time.perf_counter() - self._last_image > SILENCE:
+        if self._kept.finds and time.perf_counter() - self._main.last_image > SILENCE:
             response.message = f"no picture came within {SILENCE:g} s; check the camera"
         else:
             response.success, response.message = self._kept.find_anew()
@@ -220,12 +195,11 @@ class PerceptionNode(Node):
     def _on_timer(self) -> None:
         """Says so when images arrive that never make a frame."""
         now = time.perf_counter()
-        since = self._incomplete_since
-        if since is None or now - since < SILENCE or now - self._last_image > SILENCE:
+        told = [camera.problem(now, SILENCE) for camera in self._cameras.values()]
+        sentence = "; ".join(filter(None, told)) or self._moments.problem(now)
+        if not sentence:
             return
-        self._incomplete_since = now
         header = Header(stamp=self.get_clock().now().to_msg(), frame_id=self._frame_id())
-        sentence = self._pairing.problem(self._topics)
         self._publish(self._kept.perception.rejected(GraphStatus.BAD_IMAGE, sentence), header, now)
 
     def _on_goal_image(
@@ -244,29 +218,21 @@ class PerceptionNode(Node):
 
     def _goal_observation(self, rgb: Any, labels: Any) -> Observation:
         """As the camera would have taken it, if it is known yet."""
-        if self._lens is None or not self._calibration.placed:
+        lens, calibration = self._main.lens, self._main.calibration
+        if lens is None or not calibration.placed:
             return Observation(rgb, labels)
         height, width = rgb.shape[:2]
-        return self._calibration.view(self._lens, width, height).observation(rgb, labels, None)
+        return calibration.view(lens, width, height).observation(rgb, labels, None)
 
     # Frames
 
-    def _interpret(self, frame: StampedSet) -> None:
-        messages = frame.messages
-        self._lens = lens_from_message(messages["info"])
-        header = Header(stamp=messages["image"].header.stamp, frame_id=self._frame_id())
-        rgb = None
+    def _interpret(self, moment: Mapping[str, StampedSet]) -> None:
+        main, frame = next((self._cameras[name], frame) for name, frame in moment.items())
+        images = frame.messages["image"].header
+        header = Header(stamp=images.stamp, frame_id=self._frame_id())
         try:
-            rgb, depth, labels = (
-                self._pixels(stream, messages.get(stream))
-                for stream in ("image", "depth", "segmentation")
-            )
-            view = self._calibration.view(self._lens, rgb.shape[1], rgb.shape[0])
-            observation = view.observation(rgb, labels, depth)
-            unchanged = self._continuity.seconds_unchanged(frame.stamp, rgb, depth)
-            rgb = observation.rgb
-            perceived = self._perceive(observation, frame.stamp, unchanged)
-        except (ImageError, BadImageError) as error:
+            perceived = self._perceive(moment)
+        except BadImageError as error:
             perceived = self._kept.perception.rejected(GraphStatus.BAD_IMAGE, str(error))
         except Exception as error:  # a defect must neither stop the node nor go unseen
             self.get_logger().error(f"interpreting a frame failed:\n{traceback.format_exc()}")
@@ -274,29 +240,73 @@ class PerceptionNode(Node):
                 GraphStatus.BAD_IMAGE,
                 f"internal error: {error!r}; please report the log of this node",
             )
+        if note := self._moments.note():
+            perceived = replace(
+                perceived, message="; ".join(filter(None, (perceived.message, note)))
+            )
         self._publish(perceived, header, frame.arrival)
+        self._ask_for_view(perceived.graph, header)
+        rgb = main.picture
         if rgb is not None and self.context.ok() and self._drawings.get_subscription_count():
             drawing = draw_scene_graph(rgb, perceived)
             # A picture is in the frame of the camera that took it, not in that of the poses.
-            self._drawings.publish(image_from_array(drawing, "rgb8", messages["image"].header))
+            self._drawings.publish(image_from_array(drawing, "rgb8", images))
 
-    def _perceive(self, observation: Observation, stamp: int, unchanged: float) -> Perceived:
-        """Interprets an observation in the light of those before it; see :class:`Continuity`."""
-        perceived = self._kept.perceive(observation)
-        self._record(observation, perceived)
+    def _perceive(self, moment: Mapping[str, StampedSet]) -> Perceived:
+        """Interprets a moment in the light of those before it; see :class:`Continuity`.
+
+        Raises:
+            BadImageError: if no camera's frame can be used.
+        """
+        stamp = next(iter(moment.values())).stamp
+        observations, unchanged, bad = {}, 0.0, []
+        for name, frame in moment.items():
+            try:
+                observations[name], seconds = self._cameras[name].observation(frame)
+                unchanged = max(unchanged, seconds)
+            except BadImageError as error:
+                bad.append(str(error))
+        if not observations:
+            raise BadImageError("; ".join(bad))
+        main = next(iter(observations.values()))
+        last = observations.get(self._last_camera)
+        self._last_seen = None if last is None else last.camera
+        if self._joined is None:
+            perceived = self._kept.perceive(main)
+        else:
+            perceived = self._joined.perceive(observations)
+        self._record(main, perceived)
         graph = perceived.graph
-        if problem := self._continuity.calibration_problem(observation, graph, stamp):
-            return self._kept.perception.rejected(GraphStatus.BAD_IMAGE, problem)
+        for name, observation in observations.items():
+            continuity = self._cameras[name].continuity
+            if problem := continuity.calibration_problem(observation, graph, stamp):
+                return self._kept.perception.rejected(GraphStatus.BAD_IMAGE, problem)
         perceived = self._alike.named(perceived, stamp)
         if perceived.status.sees_all:
-            self._continuity.understand(observation, graph, stamp)
+            for name, observation in observations.items():
+                self._cameras[name].continuity.understand(observation, graph, stamp)
         elif perceived.status is GraphStatus.OCCLUDED and unchanged >= FROZEN:
             hint = (
                 f"; or look at the camera: its pictures of the last {unchanged:.0f} s are the same "
                 "to the last bit"
             )
             perceived = replace(perceived, message=perceived.message + hint)
-        return perceived
+        return replace(perceived, message="; ".join(filter(None, (perceived.message, *bad))))
+
+    def _ask_for_view(self, graph: SceneGraph, header: Header) -> None:
+        """Says from where the last camera would see what is hidden, whenever that is elsewhere."""
+        camera = self._last_seen
+        if camera is None or self._views is None or not self._views.get_subscription_count():
+            return
+        view = next_view(graph, camera, self._kept.perception.config)
+        if view is None or np.allclose(
+            view.world_from_optical, camera.world_from_optical, atol=0.01
+        ):
+            return
+        if self._asked is None or not np.allclose(self._asked, view.world_from_optical, atol=0.01):
+            self.get_logger().info(f"{self._last_camera} is asked to look at what is hidden")
+        self._asked = view.world_from_optical
+        self._views.publish(PoseStamped(header=header, pose=pose_to_message(self._asked)))
 
     def _record(self, observation: Observation, perceived: Perceived) -> None:
         if self._recorder is None:
@@ -317,26 +327,18 @@ class PerceptionNode(Node):
                 self.get_logger().error(str(error))
         super().destroy_node()
 
-    def _pixels(self, stream: str, message: Image | None) -> Any:
-        if message is None:
-            return None
-        try:
-            return READERS[stream](message)
-        except ImageError as error:
-            raise BadImageError(f"{TOPICS[stream]}: {error}") from error
-
     def _frame_id(self) -> str:
-        return self._calibration.pose_frame
+        return self._main.calibration.pose_frame
 
     def _publish(self, perceived: Perceived, header: Header, arrival: float) -> None:
         if not self.context.ok():
             return  # the node is being stopped
         seconds = time.perf_counter() - arrival
         self._graphs.publish(perceived_to_message(perceived, header, seconds))
-        if perceived.status is not self._status:
-            self._status = perceived.status
+        if perceived.status is not self._status or self._moments.note() != self._told:
+            self._status, self._told = perceived.status, self._moments.note()
             # One call a severity: rclpy's logger refuses two from the same line.
-            if perceived.status is GraphStatus.CONFIDENT:
+            if perceived.status is GraphStatus.CONFIDENT and not self._told:
                 self.get_logger().info("CONFIDENT: the scene is clear")
             else:
                 self.get_logger().warning(f"{perceived.status.name}: {perceived.message}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Final
@@ -54,6 +55,14 @@ def _mask_source_problem(value: Any) -> str:
     return f"mask_source is {value!r}; there are {', '.join(SEGMENTERS)}"
 
 
+def _cameras_problem(values: Any) -> str:
+    """Names of one camera or more."""
+    fits = values and all(re.fullmatch(r"[a-z]\w*(/[a-z]\w*)*", name) for name in values)
+    if fits and len(set(values)) == len(values):
+        return ""
+    return f"cameras is {list(values)}; needs the names with which their topics begin, each once"
+
+
 def _places_problem(value: Any) -> str:
     """One of given, found."""
     if value in (GIVEN, FOUND):
@@ -83,6 +92,15 @@ PARAMETERS: Final = (
         "detector of your own)",
         read_only=True,
         check=_mask_source_problem,
+    ),
+    ParameterSpec(
+        "cameras",
+        ["camera"],
+        "whose pictures are looked at: with what their topics begin, as in camera/image_raw. Of "
+        "several, what they see of one moment is joined; what is left and in front is so for the "
+        "first. One that falls silent is left out, and message says so",
+        read_only=True,
+        check=_cameras_problem,
     ),
     ParameterSpec(
         "rectified",
@@ -242,12 +260,17 @@ def config_from_parameters(values: Mapping[str, Any]) -> PerceptionConfig:
     Where places are to be found it has none.
 
     Raises:
-        ValueError: if places cannot be found from this source of masks.
+        ValueError: if places cannot be found from this source of masks, or cameras not be joined.
     """
     positions = positions_from_parameter(values["stack_positions"])
     to_find = values["places"] == FOUND
     if to_find and values["mask_source"] == RGB:
         raise ValueError("places are found in depth, which mask_source rgb has not; set it to rgbd")
+    if values["cameras"][1:] and (to_find or values["mask_source"] == RGB):
+        raise ValueError(
+            "several cameras are joined by depth, at places that are given; set mask_source to "
+            "rgbd, and places to given, or name one camera"
+        )
     nearest, farthest = values["place_reach"]
     return PerceptionConfig(
         mask_source=values["mask_source"],

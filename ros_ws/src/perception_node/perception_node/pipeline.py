@@ -22,8 +22,9 @@ from .hiding import Hidden, find_hidden
 from .name_sets import load_name_sets
 from .names import name_blocks
 from .observation import Observation
-from .places import Places, Points, RowOfPlaces, TwoRows
+from .places import FromAnywhere, Places, Points, RowOfPlaces, TwoRows
 from .places.found import find_places, search_volume
+from .places.hidden import cells_over
 from .places.occlusion import find_occlusion
 from .places.table import table_problem
 from .probability import evidence, load_parameters, probability
@@ -40,6 +41,7 @@ from .segment import (
 from .sight import sight_problem
 from .strays import find_strays, with_strays
 from .verdict import Verdict, judge, judge_empty, judge_fallen, with_grain, with_stray
+from .view import View
 from .visual_module.coordinates import Locator
 
 #: What is said where places are looked for and no block is seen.
@@ -62,6 +64,7 @@ class Perceived:
         evidence: what that follows from, see :mod:`.probability`; empty without objects.
         coverage: of a doubtful graph: share of such scenes whose names are among those given, at
             least; else 0.
+        view: what the graph was made of; None if it did not come that far.
     """
 
     graph: SceneGraph
@@ -71,6 +74,7 @@ class Perceived:
     probability: float = 0.0
     evidence: tuple[float, ...] = ()
     coverage: float = 0.0
+    view: View | None = None
 
 
 class Perception:
@@ -165,10 +169,17 @@ class Perception:
             raise BadImageError(problem)
         if problem := sight_problem(observation, segments, places, config):
             raise BadImageError(problem)
-        if len(segments) == 0:
+
+        def nothing(seen: Seen) -> Perceived:
             occlusion = find_occlusion(observation, segments, places, config)
-            return refused(judge_empty(occlusion, config))
-        seen = self._seen(observation, segments, places)
+            view = View(observation, seen, occlusion)
+            return replace(refused(judge_empty(occlusion, config)), view=view)
+
+        seen = Seen(segments, ())
+        if len(segments):
+            seen = self._seen(observation, segments, places)
+        if not len(seen.segments):
+            return nothing(seen)
         coordinates = self.locator.locate(self.locator.images(observation.rgb, seen.segments))
         fallen = find_fallen(observation.rgb, seen.segments, seen.surfaces, coordinates)
         if fallen:
@@ -193,11 +204,15 @@ class Perception:
             if not (poor := poorly_seen(seen, blocks, standing.stacks, coordinates.iou, config)):
                 break
             seen = seen.without(poor, observation, places.places)
+            if not len(seen.segments):
+                return nothing(seen)
             coordinates = self.locator.locate(self.locator.images(observation.rgb, seen.segments))
         occlusion = find_occlusion(observation, segments, places, config, blocks.poses)
         hidden: tuple[Hidden, ...] = ()
         if isinstance(places, TwoRows):
-            hidden = find_hidden(observation, segments, standing, blocks, seen.glimpses, config)
+            size = config.column_half_width, config.column_height
+            cells = cells_over(observation, segments, standing.places, *size)
+            hidden = find_hidden(cells, standing, blocks, seen.glimpses, config)
         names = name_blocks(
             observation.rgb, segments, blocks.shapes, standing.stacks, self._name_sets
         )
@@ -215,10 +230,13 @@ class Perception:
             graph, verdict = with_strays(graph, strays), with_stray(verdict, strays)
         doubtful = verdict.status is GraphStatus.DOUBTFUL
         coverage = self._name_sets.coverage if doubtful else 0.0
-        return Perceived(graph, *verdict, segments, likely, known, coverage)
+        view = View(observation, seen, occlusion, names, bool(fallen))
+        return Perceived(graph, *verdict, segments, likely, known, coverage, view)
 
     def _seen(self, observation: Observation, segments: Segments, places: Places) -> Seen:
-        """The blocks measured; of two rows without those that are mostly covered."""
+        """The blocks measured; where things hide others, without those that are mostly covered."""
+        if isinstance(places, FromAnywhere) and observation.depth is not None:
+            return measure_seen(observation, segments, places.places, by_things=True)
         if isinstance(places, TwoRows) and observation.depth is not None:
             return measure_seen(observation, segments, places.places)
         if isinstance(places, TwoRows) and segments.hides is not None:

@@ -30,14 +30,18 @@ class CameraRenderer:
 
     def __init__(self, client: int, config: CameraConfig, light: Light | None = None) -> None:
         self._client = client
-        self._config = config
         self._light = light or Light()
         self._lens = Lens(config) if any(config.distortion) else None
         self._view = self._lens.pinhole if self._lens else Pinhole.of(config)
-        self._optical_from_world = np.linalg.inv(config.world_from_optical)
         self._looks: dict[int, tuple[Surface, ...]] = {}
-        self._backdrop = Canvas.empty(self._view.width, self._view.height)
         self._still = frozenset(self._bodies())
+        self.move(config)
+
+    def move(self, config: CameraConfig) -> None:
+        """To where the same camera is now."""
+        self._config = config
+        self._optical_from_world = np.linalg.inv(config.world_from_optical)
+        self._backdrop = Canvas.empty(self._view.width, self._view.height)
         self._draw(self._backdrop, self._still, {})
 
     def render(self, labels_by_body: Mapping[int, int]) -> Frame:

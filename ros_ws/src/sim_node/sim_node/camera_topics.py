@@ -65,6 +65,11 @@ class CameraTopics:
         self._seed, self._count = seed, 0
         self._delivery.clear()
 
+    def move(self, camera: CameraConfig, stamp: Time) -> None:
+        """Says that the camera is elsewhere from now on."""
+        self._camera = camera
+        self.publish_extrinsics(stamp)
+
     def publish_extrinsics(self, stamp: Time) -> TransformStamped:
         """Publishes where the camera is, and returns it."""
         transform = extrinsics_message(self._camera, stamp)

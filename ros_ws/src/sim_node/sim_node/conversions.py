@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
+from geometry_msgs.msg import PoseStamped, Quaternion, Transform, TransformStamped, Vector3
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from sensor_msgs.msg import CameraInfo, JointState
@@ -14,8 +14,11 @@ from tamp_runtime.messages.images import image_from_array
 from tamp_runtime.messages.stamps import seconds
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+from scene_graph import rotation_from_quaternion
+
 from .frame import Frame
 from .scene import CameraConfig
+from .scene.cameras import Vector
 from .sensor.config import METRES, MILLIMETRES
 from .sensor.depth import millimetres
 from .trajectory import TrajectoryError
@@ -71,6 +74,15 @@ def extrinsics_message(config: CameraConfig, stamp: Time) -> TransformStamped:
             rotation=Quaternion(x=x, y=y, z=z, w=w),
         ),
     )
+
+
+def sight_from_message(message: PoseStamped) -> tuple[Vector, Vector]:
+    """Where a camera is to be, and a point 1 m before it, of its optical frame's pose in world."""
+    at, turn = message.pose.position, message.pose.orientation
+    forward = rotation_from_quaternion((turn.x, turn.y, turn.z, turn.w))[:, 2]
+    position = (at.x, at.y, at.z)
+    x, y, z = np.add(position, forward).tolist()
+    return position, (x, y, z)
 
 
 def joint_state_message(

@@ -6,10 +6,12 @@ from __future__ import annotations
 import time
 import traceback
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Final
 
 import rclpy
 from builtin_interfaces.msg import Time
+from geometry_msgs.msg import PoseStamped
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from tamp_interfaces.srv import Disturb, ResetScene
@@ -17,10 +19,12 @@ from tamp_runtime.messages.stamps import nanoseconds, stamp_from_nanoseconds
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.presence import Presence
+from tamp_runtime.qos import NEWEST
 
 from scene_graph import Stacks, format_stacks
 
 from .controller import ArmController, CommandsMotors
+from .conversions import sight_from_message
 from .disturbance.conversions import request_from_message
 from .disturbance.disturber import Disturber
 from .disturbance.request import DisturbanceError
@@ -30,7 +34,8 @@ from .layouts import LayoutError, format_layout
 from .pacing import Pacer
 from .parameters import PARAMETERS, first_layout
 from .physics_thread import PhysicsError, PhysicsThread
-from .scene import load_scene
+from .scene import SceneError, load_scene
+from .scene.cameras import Vector
 from .sensor.parameters import sensor_from_parameters
 from .simulated_arms import SIMULATED_ARMS
 from .stock_controller import TwoControllers
@@ -72,6 +77,9 @@ class SimNode(Node):
             the rules of ros2_control's joint_trajectory_controller
         gripper_trajectory (trajectory_msgs/JointTrajectory), with gripper_apart: the fingers, by
             the same rules
+        NAME/view_request (geometry_msgs/PoseStamped) of each further camera: where its optical
+            frame is to be; it goes there, upright, unless no place is seen from there, which the
+            log says
         diagnostics (diagnostic_msgs/DiagnosticArray): of the other nodes
     Services:
         sim/reset (tamp_interfaces/ResetScene): drops every disturbance that is pending or under way
@@ -133,6 +141,10 @@ class SimNode(Node):
 
     def _create_ears(self) -> None:
         self._commands = TrajectoryTopics(self, self._arm, self._physics.post, self._step_at)
+        for number, camera in list(enumerate(self._scene.cameras))[1:]:
+            self.create_subscription(
+                PoseStamped, f"{camera.name}/view_request", partial(self._on_view, number), NEWEST
+            )
         # One at a time: callers who wait must not take all of the executor's threads.
         self.create_service(
             ResetScene,
@@ -158,6 +170,9 @@ class SimNode(Node):
         if any(name.startswith("sensor.") for name in values):
             sensor = sensor_from_parameters(self._values)
             self._physics.post(lambda: self._topics.configure(sensor))
+
+    def _on_view(self, number: int, request: PoseStamped) -> None:
+        self._physics.post(lambda: self._move_camera(number, *sight_from_message(request)))
 
     def _on_reset(
         self, request: ResetScene.Request, response: ResetScene.Response
@@ -235,6 +250,16 @@ class SimNode(Node):
         self._truth = true_scene_graph(self._world)
         self._start_pacing()
         return self._stamp(), dropped
+
+    def _move_camera(self, number: int, position: Vector, target: Vector) -> None:
+        name = self._scene.cameras[number].name
+        try:
+            self._world.move_camera(number, position, target)
+        except SceneError as error:
+            self.get_logger().warning(f"{name} stays where it is: {error}")
+            return
+        self._topics.move_camera(number, self._world.config.cameras[number], self._stamp())
+        self.get_logger().info(f"{name} looks from ({', '.join(f'{x:.2f}' for x in position)}) m")
 
     def _start_pacing(self) -> None:
         self._pacer.change(self._world.time, self._real_time_factor)

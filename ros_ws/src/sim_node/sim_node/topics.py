@@ -56,6 +56,10 @@ class SimTopics:
         self._tf_static = self._node.create_publisher(TFMessage, "tf_static", LATCHED)
         self._tf_static.publish(TFMessage(transforms=transforms))
 
+    def move_camera(self, number: int, camera: CameraConfig, stamp: Time) -> None:
+        """Publishes where a camera is now, by its number."""
+        self._cameras[number].move(camera, stamp)
+
     def publish_state(self, world: World, stamp: Time) -> None:
         """The time, the arm's joints, and pictures that were on their way until now."""
         self._clock.publish(Clock(clock=stamp))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pybullet
@@ -23,6 +24,8 @@ from .layouts import check_layout
 from .meshes.light_urdf import light_urdf
 from .penetration import check_arm_is_free, check_obstacles_are_free
 from .scene import Block, SceneConfig, SceneError
+from .scene.cameras import Vector
+from .scene.config import check_scene
 from .simulated_arms import PANDA, SimulatedArm, arm_of_scene
 
 
@@ -223,6 +226,19 @@ class World:
         pybullet.removeBody(body, physicsClientId=self.client)
         for camera in self._cameras:
             camera.forget(body)
+
+    def move_camera(self, number: int, position: Vector, target: Vector) -> None:
+        """Puts one of the scene's cameras elsewhere, upright, and has it look at a target [m].
+
+        Raises:
+            SceneError: if it cannot be there, or sees none of the places; it is then where it was.
+        """
+        cameras = list(self.config.cameras)
+        cameras[number] = replace(cameras[number], position_world=position, target_world=target)
+        config = replace(self.config, cameras=tuple(cameras))
+        check_scene(config)
+        self.config = config
+        self._cameras[number].move(cameras[number])
 
     def render(self, camera: int = 0) -> Frame:
         """What one of the scene's cameras sees now, by its number."""

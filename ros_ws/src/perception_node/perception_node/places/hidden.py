@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from perception_node.camera import PinholeCamera
 from perception_node.observation import Observation
 from perception_node.segment import Segments
-from scene_graph import Place
+from scene_graph import BlockPose, Place
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -33,6 +33,10 @@ BEHIND: Final = 0.006
 HALF_WIDTH: Final = 0.026
 #: What has no depth this near to a block may be of it [px].
 RIM: Final = 3
+
+
+#: Points inside of a block, as parts of its size from its middle.
+INSIDE: Final = np.linspace(-0.35, 0.35, 5)
 
 
 @dataclass(frozen=True)
@@ -73,6 +77,18 @@ class Cells:
         while top < len(self.free) and _windows(self.free[top], layers).any():
             top += 1
         return CELL * (top - first)
+
+
+def seen_through(views: Sequence[Sequence[Cells]]) -> tuple[Cells, ...]:
+    """The points over each place of which some camera sees that they are free.
+
+    Args:
+        views: of each camera the points over the same places.
+    """
+    return tuple(
+        Cells(np.logical_or.reduce([cells.free for cells in over]), over[0].floor)
+        for over in zip(*views)
+    )
 
 
 def _windows(free: Mask, size: int) -> Mask:
@@ -146,6 +162,19 @@ def _seen_at(
     far = np.where(inside | (far + BEHIND < 0.0), far + BEHIND, np.inf)
     places = np.where(inside, rows * camera.width + columns, 0)
     return places.astype(np.int32), far
+
+
+def free_share(observation: Observation, block: BlockPose) -> float:
+    """How much of a block's inside the camera sees through, 0..1; none where depth is unknown."""
+    depth, camera = observation.depth, observation.camera
+    if depth is None or camera is None:
+        return 0.0
+    with np.errstate(invalid="ignore"):
+        seen = np.where(np.isfinite(depth) & (depth > 0.0), depth, 0.0)
+    points = np.stack(np.meshgrid(*[INSIDE] * 3, indexing="ij"), axis=-1) * block.size
+    c, s = np.cos(block.yaw), np.sin(block.yaw)
+    points = points @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) + block.position_world
+    return float(_is_free(points, seen, camera).mean())
 
 
 def with_clear_heights(places: Sequence[Place], camera: PinholeCamera) -> tuple[Place, ...]:
