@@ -10,6 +10,7 @@ from typing import Final
 
 from scene_graph import Phrase, base_name
 
+from .hashing import hashed_once
 from .language import NUMBERS, PLACE_NOUNS, SIDES
 from .slips import mended
 
@@ -18,6 +19,7 @@ _STACK: Final = frozenset({"stack"})
 _FROM_RIGHT: Final = re.compile(r"stack (\d+) from right")
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Words:
     """Some words of the goal in lower case, and where they start and end, counted from 0."""
@@ -66,6 +68,7 @@ class Kind(enum.Enum):
     COUNT = "a number of them"
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Described:
     """What is true now of the one that is meant.
@@ -83,6 +86,7 @@ class Described:
     others: tuple[Term, ...] = ()
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Term:
     """A name and which of the objects that fit it are meant.

@@ -10,6 +10,7 @@ from typing import Final
 
 from scene_graph import COLORS, PREDICATES, SHAPES, Phrase
 
+from ..hashing import hashed_once
 from ..slips import mended
 from .lexicon import BAD, ENTRIES, FILLER, MORE_COLORS, RELATED
 from .tokens import Token
@@ -22,6 +23,7 @@ _MENDED: Final = 1.0
 _STRANGE: Final = 0.2
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Word:
     """An entry where it was found.

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 from scene_graph import Phrase
 
+from ..hashing import hashed_once
 from ..terms import Term, Words
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Names:
     """Who is spoken of.
@@ -24,6 +26,7 @@ class Names:
     denied: bool = False
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Link:
     """A relation to something, without its subject.
@@ -47,6 +50,7 @@ class Link:
     chained: bool = False
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Relate:
     """Some have relations.
@@ -73,6 +77,7 @@ class Mention:
     term: Term
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Row:
     """Names in their order: a tower from the bottom (``up``), a row from the left (``left``).
