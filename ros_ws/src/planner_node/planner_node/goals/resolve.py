@@ -207,6 +207,8 @@ def _of_group(
             # Of pairs, it is not their number that is said.
             raise _not_understood(object_)
         least, most = subject.least, min(most, most if subject.most is None else subject.most)
+        if subject.less:
+            least = most = max(0, len(relations) - subject.less)
     elif Kind.COUNT in (subject.kind, object_.kind):
         least = 1
     if least == len(relations):

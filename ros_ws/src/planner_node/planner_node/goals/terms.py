@@ -98,6 +98,7 @@ class Term:
         only: of THE, nothing else is there.
         among: of COUNT, those that are counted; none: all that fit.
         exact: of EVERY, how many there have to be; None: it is not said.
+        less: of COUNT, how many fewer than all there have to be; 0: it is not said so.
         bare: it is a number or "all" without a name: "two boxes in stack0, one in stack1".
         described: it is known by how the blocks stand now.
     """
@@ -111,6 +112,7 @@ class Term:
     only: bool = False
     among: tuple[Words, ...] = ()
     exact: int | None = None
+    less: int = 0
     bare: bool = False
     described: Described | None = None
 

@@ -105,6 +105,12 @@ class Claims:
             return replace(
                 before, least=number, most=number, exact=before.least + number, bare=False
             )
+        if subject.kind is Kind.EVERY and subject.others and counted and phrase.needs_place:
+            assert before is not None
+            if before.words.text == "block" and not (before.but or before.among):
+                # "two in stack1, the others in stack2": all but two.
+                left = before.least
+                return replace(before, least=0, most=None, less=left, bare=False)
         if not subject.others:
             return subject
         if subject.kind is Kind.NO and phrase == UPON and not object_.is_place:

@@ -28,6 +28,10 @@ def _pair(t: Term, u: Term) -> Names | None:
     return _joined((t, u))
 
 
+def _both(l: Names) -> Names:
+    return replace(l, both=True)
+
+
 def _either(t: Term, u: Term) -> Names:
     return Names((t, u), either=True)
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from ..terms import Kind, Term
 from .lattice import Word
 from .lexicon import BAD
-from .meaning import Again, Change, Item, Mention, Names, Relate, Row, Take
+from .meaning import Again, Change, Item, Link, Mention, Names, Relate, Row, Take
 from .nominal import UPON, words_of
 from .verbal import Verb, relate
 
@@ -39,6 +39,16 @@ def _under(c: Item, f: bool = False) -> Item | None:
 
 def _again(n: Names) -> Again | None:
     return None if n.either or n.denied else Again(n)
+
+
+def _again_but(n: Names, to: tuple[Link, ...]) -> tuple[Item, ...]:
+    """ "the same for red, but on green"."""
+    return (Relate(n, to, bare=True),)
+
+
+def _again_not(n: Names, v: Verb) -> Again | None:
+    one = len(n.terms) == 1 and n.terms[0].kind is Kind.THE
+    return Again(n, contrary=True) if one and v == Verb(denied=True) else None
 
 
 def _again_denied(n: Names) -> Again | None:
