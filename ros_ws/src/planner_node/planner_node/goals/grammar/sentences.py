@@ -172,5 +172,10 @@ def _rather_than(i: tuple[Item, ...]) -> tuple[Joined, ...] | None:
     return (("", i),)
 
 
+def _instead(i: tuple[Item, ...], j: tuple[Item, ...]) -> tuple[Joined, ...] | None:
+    """ "red not on blue, put it on green instead"; of two wishes, is the first still one?"""
+    return (("", i), (".", j)) if i and isinstance(i[0], Relate) and i[0].denied else None
+
+
 def _or(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...]:
     return (("", i), ("or", r[0][1]), *r[1:])

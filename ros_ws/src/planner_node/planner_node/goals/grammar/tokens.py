@@ -21,6 +21,7 @@ _TOKEN: Final = re.compile(
     r"|(?P<dash>[-–—]+(?=\s|$))|(?P<other>\S)",
     re.IGNORECASE,
 )
+_THAT_IS: Final = re.compile(r"\bi\.e\.", re.IGNORECASE)
 #: "stack[0]".
 _INDEXED: Final = re.compile(r"([a-z]+)\[(\d+)\]", re.IGNORECASE)
 #: Relations as they are written in logic: "on(red, blue)", "clear(red)".
@@ -33,7 +34,7 @@ _SIGNS: Final = {
 }  # fmt: skip
 #: What is written short, as words.
 _SHORT: Final = {
-    "idc": "i do not care", "u": "you", "n": "and", "nd": "and", "adn": "and", "w": "with", "w/": "with", "ur": "your",
+    "idc": "i do not care", "ze": "the", "zee": "the", "da": "the", "dat": "that", "dis": "this", "u": "you", "n": "and", "nd": "and", "adn": "and", "w": "with", "w/": "with", "ur": "your",
     "gonna": "going to", "wanna": "want to", "gotta": "must", "gimme": "give me", "im": "i am",
     "ive": "i have", "id": "i would", "lets": "let us", "mit": "with", "und": "and", "auf": "on",
     "dont": "do not", "dnt": "do not", "doesnt": "does not", "didnt": "did not", "cant": "can not",
@@ -66,6 +67,7 @@ class Token:
 def tokens_of(text: str) -> list[Token]:
     """The words and signs of a text; raises InvalidGoalError for a sign that goals do not have."""
     text = _INDEXED.sub(r"\1 \2 ", text)
+    text = _THAT_IS.sub("viz ", text)  # as long as it was
     found: list[Token] = []
     behind = 0
     for match in _TOKEN.finditer(text):
