@@ -57,6 +57,17 @@ def _among_them(s: Names, v: Verb | None = None, wished: bool = False) -> Relate
     return Relate(s, (Link(s.terms[0].words, how="there"),))
 
 
+def _neither_of_them(s: Names, to: tuple[Link, ...], v: Verb | None = None) -> Relate | None:
+    """ "blue and green: neither may be on red"."""
+    if len(s.terms) < 2 or s.either or s.denied or (v and (v.denied or v.past)):
+        return None
+    return Relate(replace(s, denied=True), to)
+
+
+def _different_for(s: Names) -> Relate:
+    return Relate(s, (Link(s.terms[0].words, how="different"),))
+
+
 def _no_two(n: tuple[Words, bool], v: Verb | None = None) -> Relate | None:
     if v and v.denied:
         return None

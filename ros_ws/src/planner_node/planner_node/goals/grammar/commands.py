@@ -74,6 +74,11 @@ def _command_of_that(p: bool, s: Names, to: tuple[Link, ...]) -> Relate | None:
     return None if any(one.how == "side" for one in to) else relate(s, to, Verb(p))
 
 
+def _command_of_topic(s: Names, to: tuple[Link, ...]) -> Relate | None:
+    """ "stack 0 I would like to be empty"."""
+    return None if before(to, s) else relate(s, to)
+
+
 def _not_so(s: Names, to: tuple[Link, ...]) -> Relate | None:
     if len(to) > 1 or before(to, s) or any(term.kind is not Kind.THE for term in s.terms):
         return None

@@ -21,6 +21,8 @@ _LEFT_OUT: Final = 0.1
 _COMMA: Final = 0.3
 _MENDED: Final = 1.0
 _STRANGE: Final = 0.2
+#: And an adverb that nobody knows.
+_ADVERB: Final = 0.4
 
 
 @hashed_once
@@ -51,7 +53,7 @@ _CHAT: Final = frozenset({
     "UNKNOWN", "I", "YOU", "A", "THE", "BE", "MUST", "CAN", "MAY", "DO", "GOOD", "PERSONNOUN",
     "PAST", "PLEASEME", "POSSESSIVE", "NOW", "STEP", "GOAL", "ADJ", "HIGH", "MODAL", "HAS",
     "GIVENFOR", "INPLACE", "TOSIDE", "TOSPOT", "OFOF", "OF", "LIKE", "AS", "PER", "IN", "PLAINUP",
-    "FIRST", "NEEDNOT", "END", "FINAL", "VIEW", "LET", "LETTING", "REASONWORD", "OUTER",
+    "FIRST", "DEAR", "TELLTALE", "HEADWORD", "HAPPY", "FEELING", "NEEDNOT", "END", "FINAL", "VIEW", "LET", "LETTING", "REASONWORD", "OUTER",
 })  # fmt: skip
 _JOINING: Final = frozenset({"and", "then", "but", "while", "tomorrow", "later", "on", "onto"})
 #: For every word, by kind: where what begins there ends, what it is, and at what cost.
@@ -110,6 +112,8 @@ def lattice_of(tokens: Sequence[Token], literals: Collection[str]) -> Lattice:
                 continue
             word = Word(" ".join(entry), means, token.offset, tokens[end - 1].end, phrase)
             here.setdefault(kind, []).append((end, word, cost))
+        if token.text.endswith("ly") and token.text not in known | BAD:
+            skips.append((start + 1, _ADVERB))  # how it is done
         for kind, said, cost in _kinds(token.text, words[start], literals, alone):
             word = Word(said, said, token.offset, token.end)
             here.setdefault(kind, []).append((start + 1, word, cost))

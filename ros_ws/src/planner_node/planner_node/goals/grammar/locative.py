@@ -30,6 +30,10 @@ def _side_one(s: Word) -> Term:
     return term_of(words_of(s, text=f"{s.means} stack"))
 
 
+def _outer_side(s: Word) -> Term | None:
+    return _side_one(s) if s.means != "middle" else None  # of the places, or of the tower?
+
+
 def _numbered_in_one(w: Word) -> Term | None:
     letters = w.text.rstrip("0123456789").rstrip("_-")
     if letters in ("s", "st", "stck", "stk"):

@@ -98,6 +98,12 @@ def _the(n: tuple[Words, bool]) -> Term:
     return term_of(n[0], Kind.EVERY if n[1] else Kind.THE)
 
 
+def _the_unknown(d: Word, u: Word, n: tuple[Words, bool]) -> Term | None:
+    """ "the shabby red block", where there is only one that is red."""
+    together = u.offset - d.end <= 1 and n[0].offset - u.end <= 1
+    return _the(n) if together and not n[1] else None
+
+
 def _table(w: Word) -> Term:
     return term_of(words_of(w, text=w.text))
 

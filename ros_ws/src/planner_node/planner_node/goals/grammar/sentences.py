@@ -172,6 +172,20 @@ def _rather_than(i: tuple[Item, ...]) -> tuple[Joined, ...] | None:
     return (("", i),)
 
 
+def _turned_round(i: tuple[Item, ...], w: Word) -> tuple[Joined, ...] | None:
+    """ "red on blue, no, the other way round": who was on whom is under him."""
+    if len(i) != 1 or not isinstance(i[0], Relate) or len(i[0].links) != 1 or "other" not in w.text:
+        return None
+    (link,), subject = i[0].links, i[0].subject
+    if link.phrase is None or link.names is None or link.how or subject is None or link.denied:
+        return None
+    terms = (*subject.terms, *link.names.terms)
+    if len(terms) != 2 or any(term.kind is not Kind.THE or term.is_place for term in terms):
+        return None
+    turned = replace(i[0], subject=link.names, links=(replace(link, names=subject),))
+    return (("", (turned,)),)
+
+
 def _instead(i: tuple[Item, ...], j: tuple[Item, ...]) -> tuple[Joined, ...] | None:
     """ "red not on blue, put it on green instead"; of two wishes, is the first still one?"""
     return (("", i), (".", j)) if i and isinstance(i[0], Relate) and i[0].denied else None
