@@ -183,7 +183,8 @@ def _meanings(
 
 def _related(item: ParsedRelation, pair: tuple[str, str], denied: bool) -> Relation:
     predicate = item.phrase.predicate
-    nothing = item.subject.kind is Kind.NO and item.subject.words.text in NOUNS
+    who = item.subject
+    nothing = who.kind is Kind.NO and who.words.text in NOUNS and not who.but
     if nothing and item.phrase == Phrase(PREDICATES[UP]):
         # Where nothing is on it, nothing is above it either, which is easier to search for.
         predicate = PREDICATES[ABOVE]
