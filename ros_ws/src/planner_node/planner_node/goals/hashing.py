@@ -10,7 +10,7 @@ _Class = TypeVar("_Class", bound=type)
 
 def hashed_once(cls: _Class) -> _Class:
     """Makes a frozen dataclass keep its hash beside its fields."""
-    worked_out = cls.__hash__
+    worked_out: Any = cls.__hash__
 
     def kept(self: Any) -> int:
         known = self.__dict__

@@ -122,7 +122,12 @@ def _resolve_term(term: Term, scene: _Scene) -> tuple[str, ...]:
     if term.is_every_place:
         if stack_count is None:
             raise unknown_place(term.words, None)
-        every = (base_name(index) for index in range(stack_count))
+        every = [base_name(index) for index in range(stack_count)]
+        if term.exact not in (None, stack_count):
+            raise AmbiguousObjectError(
+                term.words.text, every, f"at offset {term.words.offset}: there are {stack_count} "
+                f"places, not {term.exact}; name the ones that are meant",
+            )  # fmt: skip
         return tuple(name for name in every if name not in left_out)
     if term.among:
         return tuple(resolve_name(words, names, stack_count) for words in term.among)

@@ -74,8 +74,9 @@ def _no_two(n: tuple[Words, bool], v: Verb | None = None) -> Relate | None:
     return Relate(Names((term_of(n[0], Kind.EVERY),)), (Link(n[0], how="different"),))
 
 
-def _edge_is(e: Link, v: Verb, b: Names, wished: bool = False) -> Relate | None:
-    if len(b.terms) > 1 or b.terms[0].kind is not Kind.THE or b.terms[0].is_place or v.denied:
+def _edge_is(e: Link, b: Names, v: Verb | None = None, wished: bool = False) -> Relate | None:
+    denied = v is not None and v.denied
+    if len(b.terms) > 1 or b.terms[0].kind is not Kind.THE or b.terms[0].is_place or denied:
         return None
     return Relate(b, (e,)) if asked(v, b, wished) else None
 

@@ -53,7 +53,8 @@ _CHAT: Final = frozenset({
     "UNKNOWN", "I", "YOU", "A", "THE", "BE", "MUST", "CAN", "MAY", "DO", "GOOD", "PERSONNOUN",
     "PAST", "PLEASEME", "POSSESSIVE", "NOW", "STEP", "GOAL", "ADJ", "HIGH", "MODAL", "HAS",
     "GIVENFOR", "INPLACE", "TOSIDE", "TOSPOT", "OFOF", "OF", "LIKE", "AS", "PER", "IN", "PLAINUP",
-    "FIRST", "DEAR", "TELLTALE", "HEADWORD", "HAPPY", "FEELING", "NEEDNOT", "END", "FINAL", "VIEW", "LET", "LETTING", "REASONWORD", "OUTER",
+    "FIRST", "NEEDNOT", "END", "FINAL", "VIEW", "LET", "LETTING", "REASONWORD", "OUTER",
+    "DEAR", "TELLTALE", "HEADWORD", "HAPPY", "FEELING",
 })  # fmt: skip
 _JOINING: Final = frozenset({"and", "then", "but", "while", "tomorrow", "later", "on", "onto"})
 #: For every word, by kind: where what begins there ends, what it is, and at what cost.

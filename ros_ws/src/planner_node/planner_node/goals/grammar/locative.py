@@ -55,8 +55,9 @@ def _from_right(o: Word) -> Term | None:
     return term_of(words_of(o, text=f"stack {number - 1} from right")) if number > 0 else None
 
 
-def _all_places(w: Word) -> Term:
-    return term_of(words_of(w, text="stack"), Kind.EVERY)
+def _all_places(w: Word, k: Word | None = None) -> Term:
+    exact = int(k.means) if k else None
+    return term_of(words_of(w, text="stack"), Kind.EVERY, exact=exact)
 
 
 def _per_place(w: Word) -> Term | None:

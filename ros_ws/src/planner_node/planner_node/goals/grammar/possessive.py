@@ -24,7 +24,8 @@ def _has(
         o = Names((more,))
     if not all(is_place(term) for term in s.terms) or s.either:
         return None
-    if any(term.is_place for term in o.terms) or not asked(v, s, wished):
+    # "stack 0 can take two at most": that is all that it can.
+    if any(term.is_place for term in o.terms) or not (asked(v, s, wished) or asked(v, o, wished)):
         return None
     if x is not None:
         if any(term.kind is not Kind.THE for term in o.terms):
@@ -71,9 +72,7 @@ def _number_at(
     return _number_of(n, (Link(p.words, INSIDE, Names((p,))),), q, v, wished)
 
 
-def _at_most_high(
-    s: Names, k: Word, v: Verb | None = None, wished: bool = False
-) -> Relate | None:
+def _at_most_high(s: Names, k: Word, v: Verb | None = None, wished: bool = False) -> Relate | None:
     return _has(s, _amounted((0, int(k.means))), v, wished=wished)
 
 
@@ -81,6 +80,14 @@ def _forbidden(p: Names, s: Names) -> Relate | None:
     if s.either or any(term.is_place or term.kind is Kind.NO for term in s.terms):
         return None
     return Relate(s, (Link(p.terms[0].words, INSIDE, p, denied=True),))
+
+
+def _clear_of(s: Names, o: Names) -> Relate | None:
+    """ "keep stack 1 clear of green"."""
+    if s.either or o.either or any(t.is_place or t.kind in (Kind.NO, Kind.COUNT) for t in o.terms):
+        return None
+    place = all(is_place(term) for term in s.terms)
+    return Relate(o, (Link(s.terms[0].words, INSIDE if place else UPON, s, denied=True),))
 
 
 def _its(s: Names, p: Link) -> Relate | None:

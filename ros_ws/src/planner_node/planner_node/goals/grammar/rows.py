@@ -48,7 +48,9 @@ def _floor_number(o: Word | None = None, w: Word | None = None) -> str | None:
     """``bottom``, ``top``, or the number of the floor, from 0 for the ground."""
     if w is not None:
         lowest = w.text.split()[0]
-        return "0" if lowest == "ground" else "top" if "up" in w.text or "top" in w.text else "bottom"
+        return (
+            "0" if lowest == "ground" else "top" if "up" in w.text or "top" in w.text else "bottom"
+        )
     assert o is not None
     return o.means if int(o.means) >= 0 else "top"
 

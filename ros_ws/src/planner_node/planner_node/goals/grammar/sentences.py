@@ -41,6 +41,18 @@ def _again(n: Names) -> Again | None:
     return None if n.either or n.denied else Again(n)
 
 
+def _respectively(s: Names, w: Word, o: Names) -> tuple[Item, ...] | None:
+    """ "red and blue in stacks 0 and 1 respectively"."""
+    terms = (*s.terms, *o.terms)
+    if len(s.terms) != len(o.terms) or any(term.kind is not Kind.THE for term in terms):
+        return None
+    pairs = zip(s.terms, o.terms, strict=True)
+    return tuple(
+        Relate(Names((one,)), (Link(words_of(w), w.phrase, Names((other,))),))
+        for one, other in pairs
+    )
+
+
 def _again_but(n: Names, to: tuple[Link, ...]) -> tuple[Item, ...]:
     """ "the same for red, but on green"."""
     return (Relate(n, to, bare=True),)

@@ -29,12 +29,13 @@ _CALL: Final = re.compile(r"([a-z_]+)\(([\w ]+)(?:,([\w ]+))?\)", re.IGNORECASE)
 #: Of a place in a call: "count(stack0) <= 2".
 _COUNTED: Final = frozenset({"count", "len", "length", "size", "height", "num", "number"})
 _SIGNS: Final = {
-    "+": "and", "=": "is", "==": "is", "#": "number", "@": "in", "!": "not",
+    "+": "and", "=": "is", "==": "is", "#": "number", "@": "to", "!": "not",
     ">": ">", "<=": "at most", ">=": "at least", "≤": "at most", "≥": "at least",
 }  # fmt: skip
 #: What is written short, as words.
 _SHORT: Final = {
-    "idc": "i do not care", "ze": "the", "zee": "the", "da": "the", "dat": "that", "dis": "this", "u": "you", "n": "and", "nd": "and", "adn": "and", "w": "with", "w/": "with", "ur": "your",
+    "idc": "i do not care", "ze": "the", "zee": "the", "da": "the", "dat": "that", "dis": "this",
+    "u": "you", "n": "and", "nd": "and", "adn": "and", "w": "with", "w/": "with", "ur": "your",
     "gonna": "going to", "wanna": "want to", "gotta": "must", "gimme": "give me", "im": "i am",
     "ive": "i have", "id": "i would", "lets": "let us", "mit": "with", "und": "and", "auf": "on",
     "dont": "do not", "dnt": "do not", "doesnt": "does not", "didnt": "did not", "cant": "can not",
