@@ -86,8 +86,9 @@ class Grammar:
         for bound in _BOUNDS if len(lattice) > _SHORT else (inf,):
             chart = _Chart(self, lattice, bound)
             found = [one for one in chart.found(category, 0) if one[0] == len(lattice)]
-            # No part of a reading costs more than the whole: none is missing below the bound.
-            if found and found[0][2] + apart <= bound:
+            # No part of a reading costs more than the whole: none is missing below the bound. In
+            # a text of many parts that cost a little each, none of them costs more than the last.
+            if found and (found[0][2] + apart <= bound or bound == _BOUNDS[-2]):
                 break
         return found
 
@@ -151,7 +152,7 @@ class _Chart:
             return []
         best: dict[tuple[int, Hashable], float] = {}
         last = category in self._grammar.last
-        for end, node, values, cost in self._sequences(rules, start, {}, 0.0):
+        for end, node, values, cost in self._sequences(rules, start, {}, 0.0, inf if last else self._bound):
             self._left -= 1
             if self._left < 0:
                 raise TooManyReadings
@@ -170,17 +171,17 @@ class _Chart:
         return result
 
     def _sequences(
-        self, node: _Node, start: int, values: Mapping[str, Any], cost: float
+        self, node: _Node, start: int, values: Mapping[str, Any], cost: float, bound: float
     ) -> Iterator[tuple[int, _Node, Mapping[str, Any], float]]:
         """The ways to read the parts of rules one behind the other; what they share only once."""
         if node.built:
             yield start, node, values, cost
         for part, after in node.next.items():
             for end, value, more in self._one(part, start):
-                if cost + more > self._bound:
+                if cost + more > bound:
                     continue
                 known = {**values, part.argument: value} if part.argument else values
-                yield from self._sequences(after, end, known, cost + more)
+                yield from self._sequences(after, end, known, cost + more, bound)
 
     def _one(self, part: _Part, start: int) -> Iterator[tuple[int, Any, float]]:
         if part.optional:
