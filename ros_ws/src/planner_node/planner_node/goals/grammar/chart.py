@@ -152,7 +152,9 @@ class _Chart:
             return []
         best: dict[tuple[int, Hashable], float] = {}
         last = category in self._grammar.last
-        for end, node, values, cost in self._sequences(rules, start, {}, 0.0, inf if last else self._bound):
+        for end, node, values, cost in self._sequences(
+            rules, start, {}, 0.0, inf if last else self._bound
+        ):
             self._left -= 1
             if self._left < 0:
                 raise TooManyReadings
