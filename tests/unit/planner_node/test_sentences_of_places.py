@@ -128,7 +128,6 @@ def test_what_is_told_of_places(text: str, true: str, false: str) -> None:
         "you don't have to put red on blue",
         "is red on blue?",
         "the one that is on blue onto red",
-        "two blocks in stack0 and the rest in stack1",
         "put one of red and blue in stack1",
         "I wonder if red is on blue",
         "light blue on red",

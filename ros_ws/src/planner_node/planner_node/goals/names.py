@@ -71,6 +71,9 @@ def fitting_names(
 def _mended(parts: Sequence[str], known: set[str]) -> list[str]:
     """The words of a name without slips."""
     right = frozenset(known | NOUNS | SYNONYMS.keys())
+    initials = {part[0]: part for part in known & set(COLORS)}
+    if len(initials) == len(known & set(COLORS)):
+        parts = [initials.get(part, part) for part in parts]  # "R on B"
     meant = [(part,) if part in right else mended(part, right) for part in parts]
     return [one[0] if len(one) == 1 else part for one, part in zip(meant, parts)]
 

@@ -122,7 +122,12 @@ def _resolve_term(term: Term, scene: _Scene) -> tuple[str, ...]:
     if term.is_every_place:
         if stack_count is None:
             raise unknown_place(term.words, None)
-        every = (base_name(index) for index in range(stack_count))
+        every = [base_name(index) for index in range(stack_count)]
+        if term.exact not in (None, stack_count):
+            raise AmbiguousObjectError(
+                term.words.text, every, f"at offset {term.words.offset}: there are {stack_count} "
+                f"places, not {term.exact}; name the ones that are meant",
+            )  # fmt: skip
         return tuple(name for name in every if name not in left_out)
     if term.among:
         return tuple(resolve_name(words, names, stack_count) for words in term.among)
@@ -183,7 +188,8 @@ def _meanings(
 
 def _related(item: ParsedRelation, pair: tuple[str, str], denied: bool) -> Relation:
     predicate = item.phrase.predicate
-    nothing = item.subject.kind is Kind.NO and item.subject.words.text in NOUNS
+    who = item.subject
+    nothing = who.kind is Kind.NO and who.words.text in NOUNS and not who.but
     if nothing and item.phrase == Phrase(PREDICATES[UP]):
         # Where nothing is on it, nothing is above it either, which is easier to search for.
         predicate = PREDICATES[ABOVE]
@@ -207,6 +213,8 @@ def _of_group(
             # Of pairs, it is not their number that is said.
             raise _not_understood(object_)
         least, most = subject.least, min(most, most if subject.most is None else subject.most)
+        if subject.less:
+            least = most = max(0, len(relations) - subject.less)
     elif Kind.COUNT in (subject.kind, object_.kind):
         least = 1
     if least == len(relations):

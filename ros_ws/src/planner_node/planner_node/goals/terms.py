@@ -10,6 +10,7 @@ from typing import Final
 
 from scene_graph import Phrase, base_name
 
+from .hashing import hashed_once
 from .language import NUMBERS, PLACE_NOUNS, SIDES
 from .slips import mended
 
@@ -18,6 +19,7 @@ _STACK: Final = frozenset({"stack"})
 _FROM_RIGHT: Final = re.compile(r"stack (\d+) from right")
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Words:
     """Some words of the goal in lower case, and where they start and end, counted from 0."""
@@ -66,6 +68,7 @@ class Kind(enum.Enum):
     COUNT = "a number of them"
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Described:
     """What is true now of the one that is meant.
@@ -83,6 +86,7 @@ class Described:
     others: tuple[Term, ...] = ()
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Term:
     """A name and which of the objects that fit it are meant.
@@ -94,6 +98,7 @@ class Term:
         only: of THE, nothing else is there.
         among: of COUNT, those that are counted; none: all that fit.
         exact: of EVERY, how many there have to be; None: it is not said.
+        less: of COUNT, how many fewer than all there have to be; 0: it is not said so.
         bare: it is a number or "all" without a name: "two boxes in stack0, one in stack1".
         described: it is known by how the blocks stand now.
     """
@@ -107,6 +112,7 @@ class Term:
     only: bool = False
     among: tuple[Words, ...] = ()
     exact: int | None = None
+    less: int = 0
     bare: bool = False
     described: Described | None = None
 

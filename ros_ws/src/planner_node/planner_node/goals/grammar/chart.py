@@ -11,14 +11,20 @@ function that returns None refuses what it was given. No rule may begin with its
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from math import inf
 from typing import Any, Final
 
 #: How many meanings of a category between two words are kept.
 _KEPT: Final = 6
 
 #: How many meanings are built before it is given up: a long text that may be read in many ways.
-_MOST: Final = 60_000
+_MOST: Final = 40_000
+
+#: Up to how many words all readings are looked for at once, and what those of more words may cost
+#: before dearer ones are looked for.
+_SHORT: Final = 24
+_BOUNDS: Final = (1.5, 4.0, inf)
 
 #: Where something ends, what it means, and at what cost.
 Found = tuple[int, Hashable, float]
@@ -38,11 +44,17 @@ class _Part:
     repeated: bool
 
 
-@dataclass(frozen=True)
-class _Rule:
-    parts: tuple[_Part, ...]
-    build: Callable[..., Any]
-    cost: float
+@dataclass
+class _Node:
+    """Rules that begin alike: what may follow, and what has been read where one ends here.
+
+    Attributes:
+        next: by part that follows.
+        built: the functions of the rules that end here, and what they cost.
+    """
+
+    next: dict[_Part, _Node] = field(default_factory=dict)
+    built: list[tuple[Callable[..., Any], float]] = field(default_factory=list)
 
 
 class Grammar:
@@ -54,26 +66,35 @@ class Grammar:
 
     def __init__(self, last: Collection[str] = ()) -> None:
         self.last = frozenset(last)
-        self._rules: dict[str, list[_Rule]] = {}
+        self._rules: dict[str, _Node] = {}
         self._first: dict[str, frozenset[str]] = {}
 
     def add(self, category: str, side: str, build: Callable[..., Any], cost: float = 0.0) -> None:
         """Adds a rule, with the function that builds its meaning."""
-        parts = tuple(map(_part, side.split()))
-        self._rules.setdefault(category, []).append(_Rule(parts, build, cost))
+        node = self._rules.setdefault(category, _Node())
+        for part in map(_part, side.split()):
+            node = node.next.setdefault(part, _Node())
+        node.built.append((build, cost))
         self._first.clear()
 
-    def parses(self, category: str, lattice: Lattice, start: int = 0) -> list[Found]:
-        """All readings from a word on, the cheapest first.
+    def parses(self, category: str, lattice: Lattice, apart: float) -> list[Found]:
+        """All readings of the whole that cost at most so much more than the cheapest.
 
         Raises:
             TooManyReadings: there are too many of its parts.
         """
-        return _Chart(self, lattice).found(category, start)
+        for bound in _BOUNDS if len(lattice) > _SHORT else (inf,):
+            chart = _Chart(self, lattice, bound)
+            found = [one for one in chart.found(category, 0) if one[0] == len(lattice)]
+            # No part of a reading costs more than the whole: none is missing below the bound. In
+            # a text of many parts that cost a little each, none of them costs more than the last.
+            if found and (found[0][2] + apart <= bound or bound == _BOUNDS[-2]):
+                break
+        return found
 
-    def rules(self, category: str) -> Sequence[_Rule]:
-        """Those of a category; none for a word's."""
-        return self._rules.get(category, ())
+    def rules(self, category: str) -> _Node | None:
+        """Those of a category; None for a word's."""
+        return self._rules.get(category)
 
     def first(self, category: str) -> frozenset[str]:
         """The kinds of word that something can begin with."""
@@ -81,24 +102,24 @@ class Grammar:
             if category not in self._rules:
                 return frozenset((category,))
             self._first[category] = frozenset()  # it does not begin with itself
-            kinds: set[str] = set()
-            for rule in self._rules[category]:
-                for part in rule.parts:
-                    kinds |= self.first(part.category)
-                    if not part.optional:
-                        break
-            self._first[category] = frozenset(kinds)
+            self._first[category] = frozenset(self._beginnings(self._rules[category]))
         return self._first[category]
+
+    def _beginnings(self, node: _Node) -> Iterator[str]:
+        for part, after in node.next.items():
+            yield from self.first(part.category)
+            if part.optional:
+                yield from self._beginnings(after)
 
     def literals(self) -> frozenset[str]:
         """The words that rules name in quotes."""
-        return frozenset(
-            part.category.strip("'")
-            for rules in self._rules.values()
-            for rule in rules
-            for part in rule.parts
-            if part.category.startswith("'")
-        )
+        nodes, found = list(self._rules.values()), set()
+        while nodes:
+            for part, after in nodes.pop().next.items():
+                nodes.append(after)
+                if part.category.startswith("'"):
+                    found.add(part.category.strip("'"))
+        return frozenset(found)
 
 
 def _part(text: str) -> _Part:
@@ -108,9 +129,10 @@ def _part(text: str) -> _Part:
 
 
 class _Chart:
-    def __init__(self, grammar: Grammar, lattice: Lattice) -> None:
+    def __init__(self, grammar: Grammar, lattice: Lattice, bound: float) -> None:
         self._grammar = grammar
         self._lattice = lattice
+        self._bound = bound
         self._known: dict[tuple[str, int], list[Found]] = {}
         self._left = _MOST
 
@@ -124,25 +146,24 @@ class _Chart:
     def _search(self, category: str, start: int) -> list[Found]:
         here = self._lattice[start] if start < len(self._lattice) else {}
         rules = self._grammar.rules(category)
-        if not rules:
+        if rules is None:
             return list(here.get(category, ()))
         if self._grammar.first(category).isdisjoint(here):
             return []
         best: dict[tuple[int, Hashable], float] = {}
         last = category in self._grammar.last
-        for rule in rules:
-            for end, values, cost in self._sequence(rule.parts, start):
-                self._left -= 1
-                if self._left < 0:
-                    raise TooManyReadings
-                if last and end != len(self._lattice):
-                    continue
-                meaning = rule.build(**values)
-                if meaning is None:
-                    continue
-                total = cost + rule.cost
-                if total < best.get((end, meaning), 1e9):
-                    best[end, meaning] = total
+        for end, node, values, cost in self._sequences(
+            rules, start, {}, 0.0, inf if last else self._bound
+        ):
+            self._left -= 1
+            if self._left < 0:
+                raise TooManyReadings
+            if last and end != len(self._lattice):
+                continue
+            for build, more in node.built:
+                meaning = build(**values)
+                if meaning is not None and cost + more < best.get((end, meaning), inf):
+                    best[end, meaning] = cost + more
         kept: dict[int, int] = {}
         result = []
         for (end, meaning), cost in sorted(best.items(), key=lambda item: item[1]):
@@ -151,19 +172,18 @@ class _Chart:
                 result.append((end, meaning, cost))
         return result
 
-    def _sequence(
-        self, parts: Sequence[_Part], start: int
-    ) -> Iterator[tuple[int, dict[str, Any], float]]:
-        """The ways to read the parts of a rule one behind the other."""
-        if not parts:
-            yield start, {}, 0.0
-            return
-        part, rest = parts[0], parts[1:]
-        for end, value, cost in self._one(part, start):
-            for last, values, more in self._sequence(rest, end):
-                if part.argument:
-                    values = {**values, part.argument: value}
-                yield last, values, cost + more
+    def _sequences(
+        self, node: _Node, start: int, values: Mapping[str, Any], cost: float, bound: float
+    ) -> Iterator[tuple[int, _Node, Mapping[str, Any], float]]:
+        """The ways to read the parts of rules one behind the other; what they share only once."""
+        if node.built:
+            yield start, node, values, cost
+        for part, after in node.next.items():
+            for end, value, more in self._one(part, start):
+                if cost + more > bound:
+                    continue
+                known = {**values, part.argument: value} if part.argument else values
+                yield from self._sequences(after, end, known, cost + more, bound)
 
     def _one(self, part: _Part, start: int) -> Iterator[tuple[int, Any, float]]:
         if part.optional:

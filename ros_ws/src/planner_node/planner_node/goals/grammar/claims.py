@@ -9,6 +9,7 @@ from dataclasses import replace
 from scene_graph import ABOVE, PREDICATES, Phrase
 
 from ...errors import InvalidGoalError
+from ..language import NOUNS
 from ..objections import check_places, unclear
 from ..parsed import ParsedRelation, Said, none_but
 from ..terms import Kind, Term, Words, is_any_place
@@ -47,7 +48,7 @@ class Claims:
     def _name(self, *terms: Term) -> None:
         for term in terms:
             if term.kind is Kind.THE and not term.is_place and not term.described:
-                self._named.setdefault(term.words.text, term)
+                self._named.setdefault(key_of(term), term)
 
     def _add(
         self, subjects: Sequence[Term], phrase: Phrase, denied: bool, written: Words, object_: Term
@@ -66,7 +67,7 @@ class Claims:
                 none_of = replace(one, kind=Kind.NO, least=0, most=0, bare=False)
                 subjects, denied = [none_of], False
         if len(subjects) > 1 and subjects[-1].kind is Kind.NO and subjects[-1].others:
-            if set(self._named) - {term.words.text for term in subjects}:
+            if set(self._named) - {key_of(term) for term in subjects}:
                 raise unclear(subjects[-1])  # is who else was named meant as well?
             subjects = [replace(subject, only=True) for subject in subjects[:-1]]
         if only := [subject for subject in subjects if subject.only]:
@@ -105,6 +106,12 @@ class Claims:
             return replace(
                 before, least=number, most=number, exact=before.least + number, bare=False
             )
+        if subject.kind is Kind.EVERY and subject.others and counted and phrase.needs_place:
+            assert before is not None
+            if before.words.text == "block" and not (before.but or before.among):
+                # "two in stack1, the others in stack2": all but two.
+                left = before.least
+                return replace(before, least=0, most=None, less=left, bare=False)
         if not subject.others:
             return subject
         if subject.kind is Kind.NO and phrase == UPON and not object_.is_place:
@@ -113,16 +120,14 @@ class Claims:
                 for said in self.relations
                 if isinstance(said, ParsedRelation)
                 and said.phrase == UPON
-                and said.object.words.text == object_.words.text
+                and key_of(said.object) == key_of(object_)
                 and not said.negated
             ]
             return replace(subject, others=False, but=tuple(on_it))
         spoken = [*self._named.values(), *self._kinds]
         if not spoken or any(term.kind is Kind.COUNT for term in spoken):
             raise unclear(subject)
-        if subject.kind is Kind.NO and set(self._named) != {
-            term.words.text for term in self.subjects
-        }:
+        if subject.kind is Kind.NO and set(self._named) != set(map(key_of, self.subjects)):
             raise unclear(subject)  # who else was named may be meant as well
         return replace(subject, others=False, but=tuple(spoken))
 
@@ -140,6 +145,12 @@ class Claims:
 
     def _is_it(self, term: Term) -> bool:
         return term.words.text == "it"
+
+
+def key_of(term: Term) -> str:
+    """A name without the words that every block has: "the red one" is "red"."""
+    said = [word for word in term.words.text.split() if word not in NOUNS]
+    return " ".join(said) or term.words.text
 
 
 def unclear_words(words: Words) -> InvalidGoalError:

@@ -8,13 +8,15 @@ from dataclasses import replace
 from ..terms import Kind, Term, Words
 from .lattice import Word
 from .meaning import Link, Names, Relate
-from .nominal import INSIDE, term_of, words_of
+from .nominal import INSIDE, UPON, term_of, words_of
 from .verbal import Verb, asked, before, only_of, relate
 
 
 def _with_verb(
     s: Names, to: tuple[Link, ...], v: Verb | None = None, wished: bool = False
 ) -> Relate | None:
+    if v and v.may and not v.denied and all(term.only for term in s.terms):
+        return _only(Names(tuple(replace(term, only=False) for term in s.terms)), to, "only", v)
     if not asked(v, s, wished) or (before(to, s) and to[0].denied):
         return None
     return relate(s, to, v)
@@ -48,14 +50,33 @@ def _share(
     return relate(s, (link,), v) if asked(v, s, wished) else None
 
 
+def _among_them(s: Names, v: Verb | None = None, wished: bool = False) -> Relate | None:
+    """ "three blocks in stack1, red among them"."""
+    if (v and v.denied) or not asked(v, s, wished) or any(term.is_place for term in s.terms):
+        return None
+    return Relate(s, (Link(s.terms[0].words, how="there"),))
+
+
+def _neither_of_them(s: Names, to: tuple[Link, ...], v: Verb | None = None) -> Relate | None:
+    """ "blue and green: neither may be on red"."""
+    if len(s.terms) < 2 or s.either or s.denied or (v and (v.denied or v.past)):
+        return None
+    return Relate(replace(s, denied=True), to)
+
+
+def _different_for(s: Names) -> Relate:
+    return Relate(s, (Link(s.terms[0].words, how="different"),))
+
+
 def _no_two(n: tuple[Words, bool], v: Verb | None = None) -> Relate | None:
     if v and v.denied:
         return None
     return Relate(Names((term_of(n[0], Kind.EVERY),)), (Link(n[0], how="different"),))
 
 
-def _edge_is(e: Link, v: Verb, b: Names, wished: bool = False) -> Relate | None:
-    if len(b.terms) > 1 or b.terms[0].kind is not Kind.THE or b.terms[0].is_place or v.denied:
+def _edge_is(e: Link, b: Names, v: Verb | None = None, wished: bool = False) -> Relate | None:
+    denied = v is not None and v.denied
+    if len(b.terms) > 1 or b.terms[0].kind is not Kind.THE or b.terms[0].is_place or denied:
         return None
     return Relate(b, (e,)) if asked(v, b, wished) else None
 
@@ -64,6 +85,13 @@ def _what(to: tuple[Link, ...], v: Verb, s: Names, wished: bool = False) -> Rela
     if v.denied or not asked(v, s, wished) or any(term.kind is not Kind.THE for term in s.terms):
         return None
     return None if s.either or s.denied else Relate(s, to)
+
+
+def _what_stands(to: tuple[Link, ...], v: Verb, s: Names) -> Relate | None:
+    """ "the block on green should be yellow"; "the one below" may be any that is there."""
+    if len(to) > 1 or to[0].phrase is None or to[0].phrase.predicate != UPON.predicate:
+        return None
+    return _what(to, v, s)
 
 
 def _on_which(r: Word, t: Names, v: Verb, s: Names) -> Relate | None:

@@ -11,7 +11,7 @@ from ..terms import Kind, Term, Words
 from .clausal import but
 from .lattice import Word
 from .meaning import Item, Link, Names, Relate, Take
-from .nominal import INSIDE, UPON, term_of, words_of
+from .nominal import INSIDE, UPON, counted_after, term_of, words_of
 from .verbal import Verb, asked, before, is_place, relate
 
 
@@ -27,10 +27,7 @@ def _bare(s: Names, to: tuple[Link, ...]) -> Relate | None:
 
 def _counted_after(k: Word, n: tuple[Words, bool], to: tuple[Link, ...], w: Word) -> Relate | None:
     """ "one block in every stack at least"."""
-    least, most = int(k.means), None
-    if w.text not in ("or more", "at least", "or above", "at the very least"):
-        least, most = 0, least
-    return relate(Names((term_of(n[0], Kind.COUNT, least=least, most=most),)), to, bare=True)
+    return relate(counted_after(k, n, w), to, bare=True)
 
 
 def _at_place(p: Term, s: Names, to: tuple[Link, ...]) -> Relate | None:
@@ -72,6 +69,11 @@ def _command(p: bool, s: Names, to: tuple[Link, ...] = (), e: Link | None = None
 
 def _command_of_that(p: bool, s: Names, to: tuple[Link, ...]) -> Relate | None:
     return None if any(one.how == "side" for one in to) else relate(s, to, Verb(p))
+
+
+def _command_of_topic(s: Names, to: tuple[Link, ...]) -> Relate | None:
+    """ "stack 0 I would like to be empty"."""
+    return None if before(to, s) else relate(s, to)
 
 
 def _not_so(s: Names, to: tuple[Link, ...]) -> Relate | None:

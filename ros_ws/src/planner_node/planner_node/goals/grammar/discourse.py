@@ -29,7 +29,7 @@ class Discourse(Linking):
             InvalidGoalError: it is not clear who is meant, or it cannot be said of them.
         """
         fronted = False
-        row = False
+        row = again = False
         for how, item in joined:
             if how in ("but", "."):
                 self._denied = False
@@ -40,7 +40,9 @@ class Discourse(Linking):
                 raise unclear(mentioned)
             if row and isinstance(item, Relate) and item.subject is None and how != ".":
                 raise unclear_words(item.links[0].words)
-            row = isinstance(item, Row)
+            if again and how == "but" and isinstance(item, Relate) and item.subject is None:
+                raise unclear_words(item.links[0].words)  # "the same for red, but on green"
+            row, again = isinstance(item, Row), isinstance(item, Again)
             if isinstance(item, Relate):
                 if (
                     fronted
@@ -103,8 +105,10 @@ class Discourse(Linking):
         if item.subject is not None and item.subject.denied:
             denied = not denied
         links = _scoped(item.links, denied, all(term.kind is Kind.NO for term in subjects))
-        if len(subjects) > 1 and item.subject is not None and item.subject.either and not denied:
-            raise unclear(subjects[0])
+        if item.subject is not None and len(subjects) > 1:
+            either, both = item.subject.either, item.subject.both
+            if (either and not denied) or (both and denied):
+                raise unclear(subjects[0])  # "not both": none, or one of them?
         self._check_chain(subjects, links)
         for link in links:
             if link.chained:
@@ -209,7 +213,9 @@ class Discourse(Linking):
         if self.link is None or self.object is None or self.link[1] != item.denied:
             raise unclear(item.names.terms[0])
         names = self._who(item.names)
-        self._add(names, *self.link, self.object)
+        phrase, denied, words = self.link
+        self._add(names, phrase, denied or item.contrary, words, self.object)
+        self.subjects = names
 
     def _change(self, item: Change) -> None:
         self._put_down()

@@ -10,6 +10,7 @@ from typing import Final
 
 from scene_graph import COLORS, PREDICATES, SHAPES, Phrase
 
+from ..hashing import hashed_once
 from ..slips import mended
 from .lexicon import BAD, ENTRIES, FILLER, MORE_COLORS, RELATED
 from .tokens import Token
@@ -20,8 +21,11 @@ _LEFT_OUT: Final = 0.1
 _COMMA: Final = 0.3
 _MENDED: Final = 1.0
 _STRANGE: Final = 0.2
+#: And an adverb that nobody knows.
+_ADVERB: Final = 0.4
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Word:
     """An entry where it was found.
@@ -50,6 +54,7 @@ _CHAT: Final = frozenset({
     "PAST", "PLEASEME", "POSSESSIVE", "NOW", "STEP", "GOAL", "ADJ", "HIGH", "MODAL", "HAS",
     "GIVENFOR", "INPLACE", "TOSIDE", "TOSPOT", "OFOF", "OF", "LIKE", "AS", "PER", "IN", "PLAINUP",
     "FIRST", "NEEDNOT", "END", "FINAL", "VIEW", "LET", "LETTING", "REASONWORD", "OUTER",
+    "DEAR", "TELLTALE", "HEADWORD", "HAPPY", "FEELING",
 })  # fmt: skip
 _JOINING: Final = frozenset({"and", "then", "but", "while", "tomorrow", "later", "on", "onto"})
 #: For every word, by kind: where what begins there ends, what it is, and at what cost.
@@ -108,6 +113,8 @@ def lattice_of(tokens: Sequence[Token], literals: Collection[str]) -> Lattice:
                 continue
             word = Word(" ".join(entry), means, token.offset, tokens[end - 1].end, phrase)
             here.setdefault(kind, []).append((end, word, cost))
+        if token.text.endswith("ly") and token.text not in known | BAD:
+            skips.append((start + 1, _ADVERB))  # how it is done
         for kind, said, cost in _kinds(token.text, words[start], literals, alone):
             word = Word(said, said, token.offset, token.end)
             here.setdefault(kind, []).append((start + 1, word, cost))

@@ -69,6 +69,13 @@ class Linking(Anaphora):
             self._name(*subjects)
             self.subjects, self.object = subjects, None
             return
+        if how == "not upon each other":
+            if denied or len(subjects) != 2 or any(t.kind is not Kind.THE for t in subjects):
+                raise unclear_words(written)
+            for one, other in (subjects, subjects[::-1]):
+                self._add([one], UPON, True, written, other)
+            self.subjects, self.object = subjects, None
+            return
         if how == "there":
             if self.object is None or not self.object.is_place:
                 raise unclear_words(written)

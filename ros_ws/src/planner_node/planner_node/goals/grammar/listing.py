@@ -28,6 +28,10 @@ def _pair(t: Term, u: Term) -> Names | None:
     return _joined((t, u))
 
 
+def _both(who: Names) -> Names:
+    return replace(who, both=True)
+
+
 def _either(t: Term, u: Term) -> Names:
     return Names((t, u), either=True)
 
@@ -60,6 +64,10 @@ def _places(n: Word, i: Word, j: Word, o: Word | None = None) -> Names | None:
         return None  # "two in stack 0 and one in stack 1"
     places = tuple(term_of(words_of(n, k, text=f"stack {k.means}")) for k in (i, j))
     return Names(places, either=o is not None)
+
+
+def _place_series(n: Word, i: Word, j: Word, k: Word) -> Names:
+    return Names(tuple(term_of(words_of(n, one, text=f"stack {one.means}")) for one in (i, j, k)))
 
 
 def _range(p: Term | Word, q: Term | Word) -> Names | None:

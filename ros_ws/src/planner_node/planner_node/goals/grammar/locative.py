@@ -30,6 +30,10 @@ def _side_one(s: Word) -> Term:
     return term_of(words_of(s, text=f"{s.means} stack"))
 
 
+def _outer_side(s: Word) -> Term | None:
+    return _side_one(s) if s.means != "middle" else None  # of the places, or of the tower?
+
+
 def _numbered_in_one(w: Word) -> Term | None:
     letters = w.text.rstrip("0123456789").rstrip("_-")
     if letters in ("s", "st", "stck", "stk"):
@@ -51,8 +55,9 @@ def _from_right(o: Word) -> Term | None:
     return term_of(words_of(o, text=f"stack {number - 1} from right")) if number > 0 else None
 
 
-def _all_places(w: Word) -> Term:
-    return term_of(words_of(w, text="stack"), Kind.EVERY)
+def _all_places(w: Word, k: Word | None = None) -> Term:
+    exact = int(k.means) if k else None
+    return term_of(words_of(w, text="stack"), Kind.EVERY, exact=exact)
 
 
 def _per_place(w: Word) -> Term | None:

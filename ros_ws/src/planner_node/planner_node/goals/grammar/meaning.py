@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 from scene_graph import Phrase
 
+from ..hashing import hashed_once
 from ..terms import Term, Words
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Names:
     """Who is spoken of.
@@ -17,13 +19,16 @@ class Names:
     Attributes:
         either: they are joined by "or".
         denied: it is said of none of them: "neither red nor blue".
+        both: it is said that it is of all of them: "both red and blue".
     """
 
     terms: tuple[Term, ...]
     either: bool = False
     denied: bool = False
+    both: bool = False
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Link:
     """A relation to something, without its subject.
@@ -31,7 +36,8 @@ class Link:
     Attributes:
         how: what it is where it is no phrase: ``top``, ``bottom`` (of ``names``, or of what was
             spoken of), ``side`` (a phrase, but of a side), ``there``, ``alone``, ``clear``,
-            ``each other``, ``same``, ``different`` (in one place as ``names``, or as one another),
+            ``each other``, ``not upon each other``, ``same``, ``different`` (in one place as
+            ``names``, or as one another),
             ``where`` (another one is now), ``elsewhere``; ``or`` of one that may hold as well as
             the next.
         adjacent: the places are neighbours too: "directly left of".
@@ -47,6 +53,7 @@ class Link:
     chained: bool = False
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Relate:
     """Some have relations.
@@ -73,6 +80,7 @@ class Mention:
     term: Term
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Row:
     """Names in their order: a tower from the bottom (``up``), a row from the left (``left``).
@@ -97,10 +105,16 @@ class Take:
 
 @dataclass(frozen=True)
 class Again:
-    """What was said last is said of others too; ``denied``: it was denied, and is of them."""
+    """What was said last is said of others too.
+
+    Attributes:
+        denied: it was denied, and is of them.
+        contrary: it was not, but is of them: "red is on blue, green is not".
+    """
 
     names: Names
     denied: bool = False
+    contrary: bool = False
 
 
 @dataclass(frozen=True)

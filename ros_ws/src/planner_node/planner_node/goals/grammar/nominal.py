@@ -86,6 +86,16 @@ def _between(n: Word, m: Word) -> tuple[int, int | None] | None:
     return (int(n.means), int(m.means)) if int(n.means) < int(m.means) else None
 
 
+def counted_after(k: Word, n: tuple[Words, bool], w: Word) -> Names:
+    """ "two blocks at most"."""
+    fewer = w.text not in ("or more", "at least", "or above", "at the very least")
+    bounds = (0, int(k.means)) if fewer else (int(k.means), None)
+    return Names((term_of(n[0], Kind.COUNT, least=bounds[0], most=bounds[1]),))
+
+
+_counted_after: Final = counted_after
+
+
 # A block, or blocks
 
 
@@ -96,6 +106,12 @@ def term_of(words: Words, kind: Kind = Kind.THE, **more: object) -> Term:
 
 def _the(n: tuple[Words, bool]) -> Term:
     return term_of(n[0], Kind.EVERY if n[1] else Kind.THE)
+
+
+def _the_unknown(d: Word, u: Word, n: tuple[Words, bool]) -> Term | None:
+    """ "the shabby red block", where there is only one that is red."""
+    together = u.offset - d.end <= 1 and n[0].offset - u.end <= 1
+    return _the(n) if together and not n[1] else None
 
 
 def _table(w: Word) -> Term:

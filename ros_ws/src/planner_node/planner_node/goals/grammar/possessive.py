@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from scene_graph import LEFT, PREDICATES, Phrase
 
-from ..terms import Kind, Words
+from ..terms import Kind, Term, Words
 from .lattice import Word
 from .meaning import Link, Names, Relate
 from .nominal import INSIDE, UPON, term_of, words_of
@@ -24,7 +24,8 @@ def _has(
         o = Names((more,))
     if not all(is_place(term) for term in s.terms) or s.either:
         return None
-    if any(term.is_place for term in o.terms) or not asked(v, s, wished):
+    # "stack 0 can take two at most": that is all that it can.
+    if any(term.is_place for term in o.terms) or not (asked(v, s, wished) or asked(v, o, wished)):
         return None
     if x is not None:
         if any(term.kind is not Kind.THE for term in o.terms):
@@ -57,11 +58,44 @@ def _covered(s: Names, o: Names, v: Verb | None = None, wished: bool = False) ->
 
 
 def _number_of(
-    n: tuple[Words, bool], to: tuple[Link, ...], v: Verb, q: tuple[int, int | None],
-    wished: bool = False,
+    n: tuple[Words, bool], to: tuple[Link, ...], q: tuple[int, int | None],
+    v: Verb | None = None, wished: bool = False,
 ) -> Relate | None:  # fmt: skip
     number = Names((term_of(n[0], Kind.COUNT, least=q[0], most=q[1]),))
     return relate(number, to, v) if asked(v, number, wished) and len(to) == 1 else None
+
+
+def _number_at(
+    p: Term, n: tuple[Words, bool], q: tuple[int, int | None], v: Verb | None = None,
+    wished: bool = False,
+) -> Relate | None:  # fmt: skip
+    return _number_of(n, (Link(p.words, INSIDE, Names((p,))),), q, v, wished)
+
+
+def _at_most_high(s: Names, k: Word, v: Verb | None = None, wished: bool = False) -> Relate | None:
+    return _has(s, _amounted((0, int(k.means))), v, wished=wished)
+
+
+def _forbidden(p: Names, s: Names) -> Relate | None:
+    if s.either or any(term.is_place or term.kind is Kind.NO for term in s.terms):
+        return None
+    return Relate(s, (Link(p.terms[0].words, INSIDE, p, denied=True),))
+
+
+def _clear_of(s: Names, o: Names) -> Relate | None:
+    """ "keep stack 1 clear of green"."""
+    if s.either or o.either or any(t.is_place or t.kind in (Kind.NO, Kind.COUNT) for t in o.terms):
+        return None
+    place = all(is_place(term) for term in s.terms)
+    return Relate(o, (Link(s.terms[0].words, INSIDE if place else UPON, s, denied=True),))
+
+
+def _its(s: Names, p: Link) -> Relate | None:
+    """ "green has yellow to its left and red to its right": what goes on with the other side."""
+    if p.phrase is None or p.phrase.predicate.name != LEFT:
+        return None
+    it = term_of(replace(p.words, text="it"))
+    return Relate(s, (replace(p, names=Names((it,))),), about=True)
 
 
 def _no_place_has(s: Names, o: Names) -> Relate | None:

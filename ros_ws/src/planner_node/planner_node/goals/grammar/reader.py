@@ -78,10 +78,10 @@ def _parses(tokens: Sequence[Token]) -> list[tuple[float, tuple[Joined, ...]]]:
         raise _too_long(tokens)
     lattice = lattice_of(tokens, _LITERALS)
     try:
-        found: list[Any] = GRAMMAR.parses("TEXT", lattice)
+        found: list[Any] = GRAMMAR.parses("TEXT", lattice, max(_TOLERATED, _AS_GOOD))
     except (TooManyReadings, RecursionError):
         raise _too_long(tokens) from None
-    return [(cost, joined) for end, joined, cost in found if end == len(lattice)]
+    return [(cost, joined) for _, joined, cost in found]
 
 
 def _too_long(tokens: Sequence[Token]) -> InvalidGoalError:

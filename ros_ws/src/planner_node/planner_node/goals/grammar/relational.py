@@ -22,6 +22,8 @@ def _relation(w: Word, who: Names, d: Word | None = None) -> Link | None:
     places = [term.is_place or term.words.text in ("it", "they") for term in who.terms]
     if phrase.needs_place and not all(places):
         return None
+    if w.text == "->" and any(term.is_place for term in who.terms):
+        return None
     if len({term.is_place for term in who.terms}) > 1:
         return None
     if not phrase.predicate.takes_place and any(term.is_place for term in who.terms):
@@ -110,6 +112,10 @@ def _each_other(r: Word) -> Link | None:
     return Link(words_of(r), how="each other")
 
 
+def _not_upon_each_other(w: Word) -> Link:
+    return Link(words_of(w), UPON, how="not upon each other")
+
+
 def _alone(w: Word) -> Link:
     return Link(words_of(w), how="alone")
 
@@ -135,6 +141,17 @@ def _away(w: Word, p: Term) -> Link:
 
 def _lower(w: Word, who: Names) -> Link:
     return Link(words_of(w), Phrase(PREDICATES[ABOVE], inverse=True), who)
+
+
+def _closely(to: Link) -> tuple[Link, ...] | None:
+    """ "above blue, with nothing between"."""
+    if to.phrase is None or to.denied or to.phrase.needs_place or to.phrase.predicate.name != ABOVE:
+        return None
+    return (replace(to, phrase=UPON._replace(inverse=to.phrase.inverse)),)
+
+
+def _higher(w: Word, who: Names) -> Link:
+    return Link(words_of(w), Phrase(PREDICATES[ABOVE]), who)
 
 
 def _on_its_side(to: Link, s: Word) -> tuple[Link, ...] | None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from scene_graph import LEFT, UP
 
 from ..terms import Term
+from .lattice import Word
 from .meaning import Row
 
 
@@ -43,6 +44,21 @@ def _row_from(
     return _leveled((("bottom", a[0]), *(levels or (b,))), a[1])  # type: ignore[arg-type]
 
 
+def _floor_number(o: Word | None = None, w: Word | None = None) -> str | None:
+    """``bottom``, ``top``, or the number of the floor, from 0 for the ground."""
+    if w is not None:
+        lowest = w.text.split()[0]
+        return (
+            "0" if lowest == "ground" else "top" if "up" in w.text or "top" in w.text else "bottom"
+        )
+    assert o is not None
+    return o.means if int(o.means) >= 0 else "top"
+
+
+def _floor(o: str, b: Term) -> tuple[str, Term]:
+    return o, b
+
+
 def _levels(
     a: tuple[str, Term], r: tuple[tuple[str, Term], ...] = (), b: tuple[str, Term] | None = None
 ) -> tuple[tuple[str, Term], ...]:
@@ -66,11 +82,12 @@ def _leveled(
         upwards = first == (e[0] == "bottom")
         return row_of(UP, n if upwards else n[::-1], p)
     where = [how for how, _ in levels]
-    if "upon" in where and h is None:
+    if h is None and ("upon" in where or "first" in where):
         return None  # "red at the bottom, blue on it": of which tower?
     if "under" in where and where[0] != "top":
         return None
-    where = ["then" if how in ("upon", "under") else how for how in where]
+    same = {"upon": "then", "under": "then", "first": "bottom"}
+    where = [same.get(how, how) for how in where]
     blocks = [block for _, block in levels]
     ordered = _ordered(where, blocks)
     if ordered is None:
@@ -95,13 +112,20 @@ def _formed(
 
 def _sandwich(b: Term, c: Term, d: Term, e: tuple[str, Term]) -> Row | None:
     """ "red between blue and green, with blue on top"."""
-    return _leveled(n=(c, b, d), e=e, h="tower")
+    outer = (c, d) if e[1].words.text == c.words.text else (d, c)
+    return _leveled(n=(outer[0], b, outer[1]), e=e, h="tower")
 
 
 def _ordered(where: list[str], blocks: list[Term]) -> tuple[Term, ...] | None:
     """Blocks from the bottom, by where each is said to be."""
     if where.count("bottom") > 1 or where.count("top") > 1 or where.count("middle") > 1:
         return None
+    floors = [int(how) for how in where if how.isdigit()]
+    if floors and floors == list(range(floors[0], floors[0] + len(floors))):
+        if floors[0] > 1 + (where[0] == "bottom"):
+            return None  # what is below?
+        where = ["then" if how.isdigit() else how for how in where]
+        where[0] = "bottom"
     if "bottom" not in where and "top" not in where:
         return None
     if "middle" in where:

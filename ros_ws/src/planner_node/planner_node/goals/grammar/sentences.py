@@ -8,7 +8,7 @@ from dataclasses import replace
 from ..terms import Kind, Term
 from .lattice import Word
 from .lexicon import BAD
-from .meaning import Again, Change, Item, Mention, Names, Relate, Row, Take
+from .meaning import Again, Change, Item, Link, Mention, Names, Relate, Row, Take
 from .nominal import UPON, words_of
 from .verbal import Verb, relate
 
@@ -39,6 +39,28 @@ def _under(c: Item, f: bool = False) -> Item | None:
 
 def _again(n: Names) -> Again | None:
     return None if n.either or n.denied else Again(n)
+
+
+def _respectively(s: Names, w: Word, o: Names) -> tuple[Item, ...] | None:
+    """ "red and blue in stacks 0 and 1 respectively"."""
+    terms = (*s.terms, *o.terms)
+    if len(s.terms) != len(o.terms) or any(term.kind is not Kind.THE for term in terms):
+        return None
+    pairs = zip(s.terms, o.terms, strict=True)
+    return tuple(
+        Relate(Names((one,)), (Link(words_of(w), w.phrase, Names((other,))),))
+        for one, other in pairs
+    )
+
+
+def _again_but(n: Names, to: tuple[Link, ...]) -> tuple[Item, ...]:
+    """ "the same for red, but on green"."""
+    return (Relate(n, to, bare=True),)
+
+
+def _again_not(n: Names, v: Verb) -> Again | None:
+    one = len(n.terms) == 1 and n.terms[0].kind is Kind.THE
+    return Again(n, contrary=True) if one and v == Verb(denied=True) else None
 
 
 def _again_denied(n: Names) -> Again | None:
@@ -160,6 +182,25 @@ def _rather_than(i: tuple[Item, ...]) -> tuple[Joined, ...] | None:
     if not i or not isinstance(i[0], Relate):
         return None
     return (("", i),)
+
+
+def _turned_round(i: tuple[Item, ...], w: Word) -> tuple[Joined, ...] | None:
+    """ "red on blue, no, the other way round": who was on whom is under him."""
+    if len(i) != 1 or not isinstance(i[0], Relate) or len(i[0].links) != 1 or "other" not in w.text:
+        return None
+    (link,), subject = i[0].links, i[0].subject
+    if link.phrase is None or link.names is None or link.how or subject is None or link.denied:
+        return None
+    terms = (*subject.terms, *link.names.terms)
+    if len(terms) != 2 or any(term.kind is not Kind.THE or term.is_place for term in terms):
+        return None
+    turned = replace(i[0], subject=link.names, links=(replace(link, names=subject),))
+    return (("", (turned,)),)
+
+
+def _instead(i: tuple[Item, ...], j: tuple[Item, ...]) -> tuple[Joined, ...] | None:
+    """ "red not on blue, put it on green instead"; of two wishes, is the first still one?"""
+    return (("", i), (".", j)) if i and isinstance(i[0], Relate) and i[0].denied else None
 
 
 def _or(i: tuple[Item, ...], r: tuple[Joined, ...]) -> tuple[Joined, ...]:

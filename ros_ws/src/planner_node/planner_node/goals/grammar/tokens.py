@@ -16,21 +16,25 @@ _TOKEN: Final = re.compile(
     r"(?P<left_out>[:;]-?[)D(](?!\w)|[\"“”‘*]|['’](?!\w)|(?<!\w)['’]|(?<![\w.])(?:\d+|[a-e])\)(?=\s)"
     r"|(?<=\bmax)\.|(?<=\bmin)\.|(?<=\bno)\.(?=\s*\d)|(?<=\bnr)\.(?=\s*\d))"
     r"|(?P<word>[^\W_](?:\w|-(?=\w)|['’](?=\w))*)"
-    r"|(?P<sign>(?<!\w)!(?=\w)|[-=]+>|→|[<>≤≥=]=|[≤≥]|&+|[+=#@])"
-    r"|(?P<end>[.;!?…\n]+|\.\.\.)|(?P<comma>[,()\[\]]|(?<!\d)/(?!\d))|(?P<colon>:)"
+    r"|(?P<sign>(?<!\w)!(?=\w)|[-=]+>|→|[<>≤≥=]=|>|[≤≥]|&+|[+=#@])"
+    r"|(?P<end>[.;!?…\n]+|\.\.\.)|(?P<comma>[,()\[\]]|(?<!\d)/(?!\d))|(?P<colon>:=?)"
     r"|(?P<dash>[-–—]+(?=\s|$))|(?P<other>\S)",
     re.IGNORECASE,
 )
-#: Relations as they are written in logic: "on(red, blue)", "clear(red)".
+_THAT_IS: Final = re.compile(r"\bi\.e\.", re.IGNORECASE)
 #: "stack[0]".
 _INDEXED: Final = re.compile(r"([a-z]+)\[(\d+)\]", re.IGNORECASE)
+#: Relations as they are written in logic: "on(red, blue)", "clear(red)".
 _CALL: Final = re.compile(r"([a-z_]+)\(([\w ]+)(?:,([\w ]+))?\)", re.IGNORECASE)
+#: Of a place in a call: "count(stack0) <= 2".
+_COUNTED: Final = frozenset({"count", "len", "length", "size", "height", "num", "number"})
 _SIGNS: Final = {
-    "+": "and", "=": "is", "==": "is", "#": "number", "@": "in", "!": "not",
-    "<=": "at most", ">=": "at least", "≤": "at most", "≥": "at least",
+    "+": "and", "=": "is", "==": "is", "#": "number", "@": "to", "!": "not",
+    ">": ">", "<=": "at most", ">=": "at least", "≤": "at most", "≥": "at least",
 }  # fmt: skip
 #: What is written short, as words.
 _SHORT: Final = {
+    "idc": "i do not care", "ze": "the", "zee": "the", "da": "the", "dat": "that", "dis": "this",
     "u": "you", "n": "and", "nd": "and", "adn": "and", "w": "with", "w/": "with", "ur": "your",
     "gonna": "going to", "wanna": "want to", "gotta": "must", "gimme": "give me", "im": "i am",
     "ive": "i have", "id": "i would", "lets": "let us", "mit": "with", "und": "and", "auf": "on",
@@ -64,6 +68,7 @@ class Token:
 def tokens_of(text: str) -> list[Token]:
     """The words and signs of a text; raises InvalidGoalError for a sign that goals do not have."""
     text = _INDEXED.sub(r"\1 \2 ", text)
+    text = _THAT_IS.sub("viz ", text)  # as long as it was
     found: list[Token] = []
     behind = 0
     for match in _TOKEN.finditer(text):
@@ -86,7 +91,7 @@ def tokens_of(text: str) -> list[Token]:
                 continue
             found += [Token(one, start, end) for one in words]
         elif sign := match["sign"]:
-            words = _SIGNS.get(sign, "and" if "&" in sign else "to").split()
+            words = _SIGNS.get(sign, "and" if "&" in sign else "->").split()
             found += [Token(one, start, end) for one in words]
         elif match["end"]:
             found.append(Token("?" if "?" in match["end"] else ".", start, end))
@@ -100,13 +105,20 @@ def tokens_of(text: str) -> list[Token]:
 def _relation(call: re.Match[str]) -> list[Token]:
     """ "on(red, blue)" as "red on blue", "clear(red)" as it is; none for what is no relation."""
     name = tuple(call[1].lower().split("_"))
+    if name[0] in _COUNTED and not call[3]:
+        words = ["height", "of", *call[2].lower().split()]
+        return [Token(word, call.start(), call.end()) for word in words]
     if (name in PREDICATES.phrases) != bool(call[3]) or not (call[3] or name[0] == "clear"):
         return []
-    return [
-        Token(word[0].lower(), call.start(group) + word.start(), call.start(group) + word.end())
-        for group in ((2, 1, 3) if call[3] else (1, 2))
-        for word in re.finditer(r"[^\W_]+", call[group])
-    ]
+    found = []
+    for group in (2, 1, 3) if call[3] else (1, 2):
+        # The relation stands behind its subject, as it does in words.
+        for word in re.finditer(r"[^\W_]+", call[group]):
+            start, end = (call.start(group) + at for at in word.span())
+            if group == 1 and call[3]:
+                start = end = call.end(2)
+            found.append(Token(word[0].lower(), start, end))
+    return found
 
 
 def _words(word: str) -> list[str]:

@@ -47,8 +47,13 @@ def asked(v: Verb | None, s: Names | None, wished: bool) -> bool:
         return True
     if v.past and not wished:
         return False
-    none = s is not None and (s.denied or all(term.kind is Kind.NO for term in s.terms))
+    none = s is not None and (s.denied or all(map(_bounded, s.terms)))
     return not v.may or v.denied or none or (wished and v.may == "can")
+
+
+def _bounded(term: Term) -> bool:
+    """Whether no more than so many are spoken of: "at most one block may stay"."""
+    return term.kind is Kind.NO or (term.kind is Kind.COUNT and not term.least)
 
 
 def relate(
