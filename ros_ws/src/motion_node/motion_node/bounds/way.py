@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass
-from functools import lru_cache
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,8 @@ BESIDE = 0.14
 DIP = 0.001
 #: Starting points among obstacles keep so much more than the margin [m].
 SPARE = 0.01
+#: A starting point turns neither before this share of the way nor so near to its end.
+EARLIEST: Final = 0.15
 
 
 @dataclass(frozen=True)
@@ -137,12 +139,18 @@ class Way:
         top = max([column.top for column in phase.columns if self._passed(column)], default=0.0)
         across = top + hanging + self._clear.reserve + 0.01 + higher
         share = 1.6 * shape.vertical / shape.steps
-        ends = (
-            (self.along.first, self.start_q, share),
-            (self.along.last, self.goal_q, 1 - share),
-        )
+        first, last = self.along.first, self.along.last
+        shares = (share, 1 - share)
+        if first and last:
+            # Who goes up and down far has less time to pass over what is in between. A step too
+            # late there is another valley, which costs a quarter more.
+            up, down = (max(across, e.height + e.lift) - e.height for e in (first, last))
+            far = float(np.hypot(*(last.reference[:2] - first.reference[:2])))
+            whole = up + far + down
+            upper = min(max(up / whole, EARLIEST), 1 - EARLIEST)
+            shares = (upper, max(1 - max(down / whole, EARLIEST), upper))
         found = []
-        for end, q, when in ends:
+        for end, q, when in zip((first, last), (self.start_q, self.goal_q), shares):
             if end is not None:
                 point = end.reference * (1 - inwards)
                 point[2] = max(across, end.height + end.lift)
@@ -156,7 +164,13 @@ class Way:
             shares: of the way at which it is at the configurations ``between``, each (n,) [rad].
         """
         knots = np.array([self.start_q, *between, self.goal_q])
-        return _hats(self._shape.steps, (0.0, *shares, 1.0)) @ knots
+        when = np.array([0.0, *shares, 1.0])
+        # The way begins and ends slowly.
+        time = np.linspace(0.0, 1.0, self._shape.steps + 1)
+        at = time**2 * (3.0 - 2.0 * time)
+        behind = np.searchsorted(when[1:-1], at, side="right")
+        part = (at - when[behind]) / (when[behind + 1] - when[behind])
+        return knots[behind] + part[:, None] * (knots[behind + 1] - knots[behind])
 
     def guesses_round(
         self, inverse: InverseKinematics, obstacles: Sequence[Obstacle], count: int
@@ -211,17 +225,6 @@ def guesses(
         way.through([corner.share for corner in own], list(part))
         for way, own, part in zip(ways, corners, parts)
     ]
-
-
-@lru_cache
-def _hats(steps: int, shares: tuple[float, ...]) -> Array:
-    """How much each of the configurations at shares of a way counts at its steps.
-
-    The way begins and ends slowly.
-    """
-    time = np.linspace(0.0, 1.0, steps + 1)
-    at = time**2 * (3.0 - 2.0 * time)
-    return np.column_stack([np.interp(at, shares, row) for row in np.eye(len(shares))])
 
 
 def _half_turn(angle: float) -> float:
