@@ -117,15 +117,24 @@ class Way:
         lift = max([self._shape.lift, *[top - bottom + reserve for top in near]])
         return VerticalEnd(np.array([x, y, yaw]), z, lift, phase.columns)
 
-    def _passed(self, column: Column) -> bool:
-        """Whether a stack stands near the straight line between the ends, seen from above."""
-        first, last = self.along.first, self.along.last
+    def _passed(self, thorough: bool) -> list[Column]:
+        """The stacks that a starting point passes over.
+
+        Between two vertical ends those near the straight line, seen from above. From home and back
+        none, unless ``thorough``: the arm comes from above anyway, and lifted over them first it
+        ends in another valley, which costs a tenth more.
+        """
+        first, last, columns = self.along.first, self.along.last, self.phase.columns
         if first is None or last is None:
-            return True
+            return list(columns) if thorough else []
         begin, way = first.reference[:2], last.reference[:2] - first.reference[:2]
-        away = np.array(column.center) - begin
-        share = float(np.clip(away @ way / max(float(way @ way), 1e-9), 0.0, 1.0))
-        return float(np.hypot(*(away - share * way))) < BESIDE
+        found = []
+        for column in columns:
+            away = np.array(column.center) - begin
+            share = float(np.clip(away @ way / max(float(way @ way), 1e-9), 0.0, 1.0))
+            if float(np.hypot(*(away - share * way))) < BESIDE:
+                found.append(column)
+        return found
 
     def corners(self, higher: float, inwards: float) -> list[Corner]:
         """Where a starting point turns that goes up, across and down.
@@ -136,7 +145,7 @@ class Way:
         """
         shape, phase = self._shape, self.phase
         hanging = phase.tool.bottom - self._model.arm.gripper.tcp_offset
-        top = max([column.top for column in phase.columns if self._passed(column)], default=0.0)
+        top = max([column.top for column in self._passed(higher > 0.0)], default=0.0)
         across = top + hanging + self._clear.reserve + 0.01 + higher
         share = 1.6 * shape.vertical / shape.steps
         first, last = self.along.first, self.along.last
