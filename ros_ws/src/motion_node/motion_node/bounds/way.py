@@ -33,6 +33,8 @@ DIP = 0.001
 SPARE = 0.01
 #: A starting point turns neither before this share of the way nor so near to its end.
 EARLIEST: Final = 0.15
+#: Where others stand in between, it turns so much later, and earlier, to be over them more shortly.
+BETWEEN: Final = 0.11
 
 
 @dataclass(frozen=True)
@@ -145,7 +147,8 @@ class Way:
         """
         shape, phase = self._shape, self.phase
         hanging = phase.tool.bottom - self._model.arm.gripper.tcp_offset
-        top = max([column.top for column in self._passed(higher > 0.0)], default=0.0)
+        passed = self._passed(higher > 0.0)
+        top = max([column.top for column in passed], default=0.0)
         across = top + hanging + self._clear.reserve + 0.01 + higher
         share = 1.6 * shape.vertical / shape.steps
         first, last = self.along.first, self.along.last
@@ -155,9 +158,13 @@ class Way:
             # late there is another valley, which costs a quarter more.
             up, down = (max(across, e.height + e.lift) - e.height for e in (first, last))
             far = float(np.hypot(*(last.reference[:2] - first.reference[:2])))
-            whole = up + far + down
-            upper = min(max(up / whole, EARLIEST), 1 - EARLIEST)
-            shares = (upper, max(1 - max(down / whole, EARLIEST), upper))
+            switches = [switch.stack for switch in (phase.start, phase.switch) if switch]
+            own = [phase.columns[stack] for stack in switches]
+            between = any(c.top > self._clear.floor and c not in own for c in passed)
+            turned = np.array([up, up + far]) / (up + far + down)
+            turned += (BETWEEN, -BETWEEN) if between else (0.0, 0.0)
+            earlier, later = np.clip(turned, EARLIEST, 1 - EARLIEST)
+            shares = (float(earlier), float(max(earlier, later)))
         found = []
         for end, q, when in zip((first, last), (self.start_q, self.goal_q), shares):
             if end is not None:
