@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass
-from functools import lru_cache
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,10 @@ BESIDE = 0.14
 DIP = 0.001
 #: Starting points among obstacles keep so much more than the margin [m].
 SPARE = 0.01
+#: A starting point turns neither before this share of the way nor so near to its end.
+EARLIEST: Final = 0.15
+#: Where others stand in between, it turns so much later, and earlier, to be over them more shortly.
+BETWEEN: Final = 0.11
 
 
 @dataclass(frozen=True)
@@ -115,15 +119,24 @@ class Way:
         lift = max([self._shape.lift, *[top - bottom + reserve for top in near]])
         return VerticalEnd(np.array([x, y, yaw]), z, lift, phase.columns)
 
-    def _passed(self, column: Column) -> bool:
-        """Whether a stack stands near the straight line between the ends, seen from above."""
-        first, last = self.along.first, self.along.last
+    def _passed(self, thorough: bool) -> list[Column]:
+        """The stacks that a starting point passes over.
+
+        Between two vertical ends those near the straight line, seen from above. From home and back
+        none, unless ``thorough``: the arm comes from above anyway, and lifted over them first it
+        ends in another valley, which costs a tenth more.
+        """
+        first, last, columns = self.along.first, self.along.last, self.phase.columns
         if first is None or last is None:
-            return True
+            return list(columns) if thorough else []
         begin, way = first.reference[:2], last.reference[:2] - first.reference[:2]
-        away = np.array(column.center) - begin
-        share = float(np.clip(away @ way / max(float(way @ way), 1e-9), 0.0, 1.0))
-        return float(np.hypot(*(away - share * way))) < BESIDE
+        found = []
+        for column in columns:
+            away = np.array(column.center) - begin
+            share = float(np.clip(away @ way / max(float(way @ way), 1e-9), 0.0, 1.0))
+            if float(np.hypot(*(away - share * way))) < BESIDE:
+                found.append(column)
+        return found
 
     def corners(self, higher: float, inwards: float) -> list[Corner]:
         """Where a starting point turns that goes up, across and down.
@@ -134,15 +147,26 @@ class Way:
         """
         shape, phase = self._shape, self.phase
         hanging = phase.tool.bottom - self._model.arm.gripper.tcp_offset
-        top = max([column.top for column in phase.columns if self._passed(column)], default=0.0)
+        passed = self._passed(higher > 0.0)
+        top = max([column.top for column in passed], default=0.0)
         across = top + hanging + self._clear.reserve + 0.01 + higher
         share = 1.6 * shape.vertical / shape.steps
-        ends = (
-            (self.along.first, self.start_q, share),
-            (self.along.last, self.goal_q, 1 - share),
-        )
+        first, last = self.along.first, self.along.last
+        shares = (share, 1 - share)
+        if first and last:
+            # Who goes up and down far has less time to pass over what is in between. A step too
+            # late there is another valley, which costs a quarter more.
+            up, down = (max(across, e.height + e.lift) - e.height for e in (first, last))
+            far = float(np.hypot(*(last.reference[:2] - first.reference[:2])))
+            switches = [switch.stack for switch in (phase.start, phase.switch) if switch]
+            own = [phase.columns[stack] for stack in switches]
+            between = any(c.top > self._clear.floor and c not in own for c in passed)
+            turned = np.array([up, up + far]) / (up + far + down)
+            turned += (BETWEEN, -BETWEEN) if between else (0.0, 0.0)
+            earlier, later = np.clip(turned, EARLIEST, 1 - EARLIEST)
+            shares = (float(earlier), float(max(earlier, later)))
         found = []
-        for end, q, when in ends:
+        for end, q, when in zip((first, last), (self.start_q, self.goal_q), shares):
             if end is not None:
                 point = end.reference * (1 - inwards)
                 point[2] = max(across, end.height + end.lift)
@@ -156,7 +180,13 @@ class Way:
             shares: of the way at which it is at the configurations ``between``, each (n,) [rad].
         """
         knots = np.array([self.start_q, *between, self.goal_q])
-        return _hats(self._shape.steps, (0.0, *shares, 1.0)) @ knots
+        when = np.array([0.0, *shares, 1.0])
+        # The way begins and ends slowly.
+        time = np.linspace(0.0, 1.0, self._shape.steps + 1)
+        at = time**2 * (3.0 - 2.0 * time)
+        behind = np.searchsorted(when[1:-1], at, side="right")
+        part = (at - when[behind]) / (when[behind + 1] - when[behind])
+        return knots[behind] + part[:, None] * (knots[behind + 1] - knots[behind])
 
     def guesses_round(
         self, inverse: InverseKinematics, obstacles: Sequence[Obstacle], count: int
@@ -211,17 +241,6 @@ def guesses(
         way.through([corner.share for corner in own], list(part))
         for way, own, part in zip(ways, corners, parts)
     ]
-
-
-@lru_cache
-def _hats(steps: int, shares: tuple[float, ...]) -> Array:
-    """How much each of the configurations at shares of a way counts at its steps.
-
-    The way begins and ends slowly.
-    """
-    time = np.linspace(0.0, 1.0, steps + 1)
-    at = time**2 * (3.0 - 2.0 * time)
-    return np.column_stack([np.interp(at, shares, row) for row in np.eye(len(shares))])
 
 
 def _half_turn(angle: float) -> float:
