@@ -233,7 +233,8 @@ SETS: Final = (
     ),
     *(PictureSet(
         f"{name}_{count}_cameras" if count > 1 else f"{name}_1_camera",
-        f"{what}, {count} camera{'s' * (count > 1)}", draw, 500, _REAL, cameras=count, told=count > 1,
+        f"{what}, {count} camera{'s' * (count > 1)}", draw, 500, _REAL, cameras=count,
+        told=count > 1,
         graph=0.97 if count > 1 else None, note=f"real depth; {HOW[count]}",
     ) for name, what, draw in (
         ("rows", "two rows from low, 6 objects", low_rows(6)),

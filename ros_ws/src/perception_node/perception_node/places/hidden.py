@@ -139,7 +139,7 @@ def _grid(half_width: float, height: float) -> Array:
 
 
 def _is_free(seen: Array, pixels: NDArray[np.int32], depths: Array) -> Mask:
-    """Whether what is seen at points is behind them, see :func:`_seen_at`."""
+    """Whether what is seen at points is behind them, see :func:`_seen`."""
     return np.asarray(seen.ravel()[pixels] > depths)
 
 
@@ -147,13 +147,17 @@ def _is_free(seen: Array, pixels: NDArray[np.int32], depths: Array) -> Mask:
 def _seen_at(
     camera: PinholeCamera, foot: tuple[float, float, float], half_width: float, height: float
 ) -> tuple[NDArray[np.int32], Array]:
-    """Where the points over a place are seen; kept, as places stay where they are.
+    """As :func:`_seen` of the points over a place; kept, as places stay where they are."""
+    return _seen(camera, _grid(half_width, height) + foot)
+
+
+def _seen(camera: PinholeCamera, points: Array) -> tuple[NDArray[np.int32], Array]:
+    """Where points are seen, shape (..., 3) [m].
 
     Returns:
         Their pixels, as indices of the flattened picture, and which depths there are behind them:
-        those of points outside of the picture are behind nothing, shapes (z, y, x) [m].
+        those of points outside of the picture are behind nothing, both of shape (...) [m].
     """
-    points = _grid(half_width, height) + foot
     pixels = np.nan_to_num(camera.project(points), nan=-1.0)
     columns, rows = np.rint(pixels).astype(int).transpose(-1, *range(pixels.ndim - 1))
     inside = (rows >= 0) & (rows < camera.height) & (columns >= 0) & (columns < camera.width)
@@ -174,7 +178,7 @@ def free_share(observation: Observation, block: BlockPose) -> float:
     points = np.stack(np.meshgrid(*[INSIDE] * 3, indexing="ij"), axis=-1) * block.size
     c, s = np.cos(block.yaw), np.sin(block.yaw)
     points = points @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) + block.position_world
-    return float(_is_free(points, seen, camera).mean())
+    return float(_is_free(seen, *_seen(camera, points)).mean())
 
 
 def with_clear_heights(places: Sequence[Place], camera: PinholeCamera) -> tuple[Place, ...]:
