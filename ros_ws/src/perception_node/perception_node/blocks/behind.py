@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception_node.camera import PinholeCamera
-
 from scene_graph import BOX
 
 from .unit_bodies import LOW, TURN, UNITS, WIDE
