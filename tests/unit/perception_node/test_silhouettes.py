@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 from perception_scenes import PLACES, Solid, cast, looking_camera, piled, tower
@@ -70,7 +71,10 @@ def test_doubt_whether_a_block_was_missed_is_settled_by_the_top_below_it(edge: f
         _, labels = cast(solids, CAMERA)
         labels[labels > 1] = 0  # the upper one is missed
         found = Segments.from_labels(labels, hides=np.zeros(labels.shape, bool))
-        segments = replace(found, blocks=(replace(found.blocks[0], over=(12.0, 34.0)),))
+        block = found.blocks[0]
+        rim = block.part & ~cv2.erode(block.part.astype(np.uint8), np.ones((3, 3))).astype(bool)
+        outline = np.argwhere(rim)[:, ::-1].astype(np.float64)
+        segments = replace(found, blocks=(replace(block, outline=outline, over=(12.0, 34.0)),))
         rgb = np.full((*labels.shape, 3), 120, np.uint8)
         if len(solids) == 1:
             assert_is(measure_silhouettes(rgb, segments, CAMERA, FEET)[0], low)
