@@ -96,7 +96,9 @@ def _edge(w: Word, how: str, p: Term | None) -> Link | None:
     return Link(words_of(w), how=how, names=Names((p,)) if p else None)
 
 
-def _together(w: Word, who: Names | None = None) -> Link:
+def _together(w: Word, who: Names | None = None) -> Link | None:
+    if who is not None and (who.either or who.denied):
+        return None
     return Link(words_of(w), how="same", names=who)
 
 

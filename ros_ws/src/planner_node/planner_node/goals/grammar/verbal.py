@@ -32,6 +32,8 @@ def _verb(w: Sequence[tuple[str, Word]]) -> Verb | None:
     kinds = [kind for kind, _ in w]
     if kinds.count("not") > 1 or len(w) > 6 or kinds == ["not"]:
         return None
+    if "not" in kinds and "all" in kinds[kinds.index("not") :]:
+        return None  # "not both": none, or one of them?
     for (kind, _), (_, word) in pairwise(w):
         if kind == "not" and word.text in _NEED:
             return None
