@@ -58,6 +58,22 @@ def test_codes_of_states_never_seen_lose_their_damage() -> None:
     assert np.array_equal(snapped, clean) and valid.all()
 
 
+def test_patterns_that_differ_little_are_two_though_some_pictures_are_badly_damaged() -> None:
+    rng = np.random.default_rng(3)
+    patterns = [patterns_drawn(6, rng) for _ in CORNERS]
+    patterns[0][1] = patterns[0][0]
+    patterns[0][1, 0, 0, :4] ^= True
+    every = np.array([[a, b] for a in range(6) for b in range(6)])
+    codes = codes_of(every, patterns, 1, 12, rng)
+    bits = np.unpackbits(codes, axis=2).reshape(*codes.shape[:2], BITS, EDGE, EDGE)
+    row, column = CORNERS[0]
+    bits[[2, 20, 29, 33], 5, 1, row : row + 5, column] ^= 1
+    parts = find_parts(np.packbits(bits.reshape(*codes.shape[:2], -1), axis=2), EDGE)
+    clean = codes_of(every, patterns, 0, 1, rng)[:, 0]
+    snapped, _ = parts.snap(clean)
+    assert np.array_equal(snapped, clean)
+
+
 def test_what_is_far_from_every_pattern_is_told() -> None:
     rng = np.random.default_rng(1)
     patterns = [patterns_drawn(4, rng) for _ in CORNERS]

@@ -25,8 +25,9 @@ Bits = NDArray[np.bool_]
 _CHANGING: Final = 0.003
 #: Patterns seen less often are noise.
 _LEAST_SEEN: Final = 2
-#: Share of pairs of pictures of one state within whose distance patterns are one.
-_SAME: Final = 0.995
+#: Share of pairs of pictures of one state within whose distance patterns are one; the first of those
+#: that tell most pictures apart.
+_SAME: Final = (0.995, 0.99, 0.98, 0.97)
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,24 @@ class Parts:
 
 
 def find_parts(codes: NDArray[np.uint8], map_edge: int) -> Parts:
-    """The parts of codes (s, r, b): r pictures of each of s states."""
+    """The parts of codes (s, r, b): r pictures of each of s states.
+
+    What differs by more than some few pictures of one state do may be one thing or two: as many
+    pictures as possible are to have a code that is their state's and no other's.
+    """
+    found = [_parts_within(codes, map_edge, share) for share in _SAME]
+    return max(found, key=lambda parts: _told_apart(parts, codes))
+
+
+def _told_apart(parts: Parts, codes: NDArray[np.uint8]) -> int:
+    """How many pictures have the code of their state's first picture, if no other state's has."""
+    snapped = parts.snap(codes.reshape(-1, codes.shape[-1]))[0].reshape(codes.shape)
+    _, index, counts = np.unique(snapped[:, 0], axis=0, return_inverse=True, return_counts=True)
+    same = (snapped == snapped[:, :1]).all(axis=2).sum(axis=1)
+    return int(same[counts[index.ravel()] == 1].sum())
+
+
+def _parts_within(codes: NDArray[np.uint8], map_edge: int, share_of_pairs: float) -> Parts:
     flat = codes.reshape(-1, codes.shape[-1])
     bits = np.unpackbits(flat, axis=1).astype(np.bool_)
     share = bits.mean(axis=0)
@@ -82,7 +100,7 @@ def find_parts(codes: NDArray[np.uint8], map_edge: int) -> Parts:
         chosen = np.flatnonzero((of_bit == number) & changing)
         mine = bits[:, chosen]
         apart = (mine[first] != mine[second]).sum(axis=1)
-        radius = max(1, int(np.quantile(apart, _SAME)))
+        radius = max(1, int(np.quantile(apart, share_of_pairs)))
         patterns = _without_aliases(_patterns(mine, radius), mine, first, second)
         if len(patterns) > 1:
             parts.append(Part(chosen, patterns, radius))
