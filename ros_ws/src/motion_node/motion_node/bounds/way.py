@@ -36,7 +36,7 @@ SPARE = 0.01
 #: A starting point turns neither before this share of the way nor so near to its end.
 EARLIEST: Final = 0.15
 #: Where others stand in between, it turns so much later, and earlier, to be over them more shortly.
-BETWEEN: Final = 0.11
+BETWEEN: Final = 0.05
 
 
 @dataclass(frozen=True)
