@@ -9,6 +9,8 @@ from collision_oracle import CollisionOracle, replay, switches
 from motion_scenes import EDGE, random_heights, random_moves, scene
 from numpy.typing import NDArray
 
+from motion_node.bounds.costs import path_costs
+from motion_node.constraints import Clearances
 from motion_node.phases import HOME, PICK, PLACE
 from motion_node.planner import Motion, MotionPlanner
 from motion_node.robots import PANDA
@@ -72,6 +74,33 @@ def test_low_blocks_beside_tall_towers(
     planner: MotionPlanner, heights: tuple[int, ...], moves: list[tuple[int, int]]
 ) -> None:
     judge(planner, scene(heights, np.random.default_rng(0)), [Move(*m) for m in moves])
+
+
+@pytest.mark.parametrize(
+    ("heights", "move"), [((0, 6, 0), (1, 0)), ((1, 5, 0), (0, 1)), ((0, 5, 1), (2, 0))]
+)
+def test_no_way_lies_in_a_dear_valley(
+    planner: MotionPlanner, heights: tuple[int, ...], move: tuple[int, int]
+) -> None:
+    """The same ways begun sooner or later, solved from there, do not cost much less."""
+    motion = planner.solve(scene(heights), [Move(*move)], HOME_Q, OPEN)
+    _, problem = planner.prepare(3)
+    clear = Clearances(planner.settings.path.margin, motion.floor)
+    costs = path_costs(1, planner.settings.path.steps, np.array(PANDA.acceleration))
+
+    def cost(q: NDArray[np.float64]) -> float:
+        return sum(float((c.weights * (c.differences @ q) ** 2).sum()) for c in costs)
+
+    ours, best = 0.0, 0.0
+    for path in motion.paths:
+        share = np.linspace(0.0, 1.0, len(path.q))
+        found = [cost(path.q)]
+        for power in (0.5, 0.7, 1.4, 2.0):
+            start = np.column_stack([np.interp(share**power, share, own) for own in path.q.T])
+            ends = [path.q[0], path.q[-1]]
+            found.append(cost(problem.solve([path.phase], ends, clear, [start])[0].q))
+        ours, best = ours + found[0], best + min(found)
+    assert ours < 1.01 * best
 
 
 def test_blocks_may_be_turned(planner: MotionPlanner) -> None:

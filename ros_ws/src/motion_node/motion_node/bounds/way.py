@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass
+from functools import lru_cache
+from math import dist
 from typing import Final
 
 import numpy as np
@@ -34,7 +36,7 @@ SPARE = 0.01
 #: A starting point turns neither before this share of the way nor so near to its end.
 EARLIEST: Final = 0.15
 #: Where others stand in between, it turns so much later, and earlier, to be over them more shortly.
-BETWEEN: Final = 0.11
+BETWEEN: Final = 0.05
 
 
 @dataclass(frozen=True)
@@ -157,14 +159,14 @@ class Way:
             # Who goes up and down far has less time to pass over what is in between. A step too
             # late there is another valley, which costs a quarter more.
             up, down = (max(across, e.height + e.lift) - e.height for e in (first, last))
-            far = float(np.hypot(*(last.reference[:2] - first.reference[:2])))
+            far = dist(last.reference[:2], first.reference[:2])
             switches = [switch.stack for switch in (phase.start, phase.switch) if switch]
             own = [phase.columns[stack] for stack in switches]
             between = any(c.top > self._clear.floor and c not in own for c in passed)
-            turned = np.array([up, up + far]) / (up + far + down)
-            turned += (BETWEEN, -BETWEEN) if between else (0.0, 0.0)
-            earlier, later = np.clip(turned, EARLIEST, 1 - EARLIEST)
-            shares = (float(earlier), float(max(earlier, later)))
+            whole, shorter = up + far + down, BETWEEN if between else 0.0
+            earlier = min(max(up / whole + shorter, EARLIEST), 1 - EARLIEST)
+            later = 1 - max(down / whole + shorter, EARLIEST)
+            shares = (earlier, max(earlier, later))
         found = []
         for end, q, when in zip((first, last), (self.start_q, self.goal_q), shares):
             if end is not None:
@@ -181,12 +183,11 @@ class Way:
         """
         knots = np.array([self.start_q, *between, self.goal_q])
         when = np.array([0.0, *shares, 1.0])
-        # The way begins and ends slowly.
-        time = np.linspace(0.0, 1.0, self._shape.steps + 1)
-        at = time**2 * (3.0 - 2.0 * time)
-        behind = np.searchsorted(when[1:-1], at, side="right")
+        at = _slow_ends(self._shape.steps)
+        behind = when[1:-1].searchsorted(at, side="right")
         part = (at - when[behind]) / (when[behind + 1] - when[behind])
-        return knots[behind] + part[:, None] * (knots[behind + 1] - knots[behind])
+        before = knots[behind]
+        return np.asarray(before + part[:, None] * (knots[behind + 1] - before))
 
     def guesses_round(
         self, inverse: InverseKinematics, obstacles: Sequence[Obstacle], count: int
@@ -241,6 +242,13 @@ def guesses(
         way.through([corner.share for corner in own], list(part))
         for way, own, part in zip(ways, corners, parts)
     ]
+
+
+@lru_cache
+def _slow_ends(steps: int) -> Array:
+    """At which share of a way that begins and ends slowly its steps are, shape (steps + 1,)."""
+    time = np.linspace(0.0, 1.0, steps + 1)
+    return time**2 * (3.0 - 2.0 * time)
 
 
 def _half_turn(angle: float) -> float:
