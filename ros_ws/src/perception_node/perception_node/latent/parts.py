@@ -25,8 +25,8 @@ Bits = NDArray[np.bool_]
 _CHANGING: Final = 0.003
 #: Patterns seen less often are noise.
 _LEAST_SEEN: Final = 2
-#: Share of pairs of pictures of one state within whose distance patterns are one; the first of those
-#: that tell most pictures apart.
+#: Shares of pairs of pictures of one state within whose distance patterns are one; the first is
+#: taken that tells most pictures apart.
 _SAME: Final = (0.995, 0.99, 0.98, 0.97)
 
 
