@@ -227,7 +227,7 @@ class MotionNode(Node):
     def _prepare(self, planner: MotionPlanner) -> None:
         planner.timing = timing_settings(self._values)  # it may have been changed meanwhile
         for moves in range(1, PREPARED_MOVES + 1):
-            if self._planners.wanting:
+            if self._planners.wanting or not self.context.ok():
                 return
             planner.prepare(PREPARED_STACKS, moves)
 
