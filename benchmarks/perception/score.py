@@ -32,6 +32,7 @@ from perception_node import (
     PerceptionConfig,
     Segmenter,
 )
+from perception_node.continuity import FROZEN_COLORS, Continuity
 from perception_node.joined_views import JoinedViews
 from perception_node.segment import RGB
 from perception_node.visual_module.coordinates import Locator
@@ -117,6 +118,9 @@ def answer_of(drawn: Drawn, item: PictureSet, locator: Locator, world: World) ->
         earlier = functools.partial(_other_state, world, drawn)
         observation = item.damage(observation, Shot(exact.labels, earlier, rng))
     answer, seen = answer_to(drawn.seed, observation, truth, item, locator, others)
+    if item.after and _is_frozen(earlier(), observation):
+        status = GraphStatus.BAD_IMAGE.name
+        answer = replace(answer, confident=False, status=status, message=FROZEN_COLORS, readings=0)
     if answer.hides:
         right = is_partly_right(seen.graph, truth, frame, world.config.camera)
         answer = replace(answer, right=right)
@@ -208,6 +212,13 @@ def answers_of(item: PictureSet, locator: Locator, numbers: Iterable[int]) -> It
         entries = list(group)
         with entries[0].world() as world:
             yield from (answer_of(entry, item, locator, world) for entry in entries)
+
+
+def _is_frozen(earlier: Frame, now: Observation) -> bool:
+    """Whether the node says so of a picture that comes a tenth of a second after another."""
+    continuity = Continuity()
+    continuity.frozen_colors(0, earlier.rgb, earlier.depth)
+    return continuity.frozen_colors(10**8, now.rgb, now.depth) > 0.0
 
 
 def _other_state(world: World, drawn: Drawn) -> Frame:

@@ -43,6 +43,8 @@ UNSEEN_COLORS: Final = tuple(color for color in COLORS if color not in BASIC_COL
 HALF_HIDDEN: Final = "half of one block lost"
 #: Damages after which a picture may be as one of another state: only a moment before could tell.
 UNTOLD: Final = ("mirrored", "depth_frozen", "color_frozen")
+#: Those of them that are measured with that moment.
+AFTER: Final = ("color_frozen",)
 #: What is done with masks where depth is there as well.
 SNAPPED: Final = "masks are made those of what is found in colour and depth: little is left"
 #: What is looked through, where it is asked how much more two cameras see.
@@ -85,6 +87,7 @@ class PictureSet:
         found: how many places are to be found, 0: as many as stacks; None: they are given.
         between: whether colours may be in doubt, and what is published of that is counted.
         cameras: how many are looked through, where it is asked how much more several see; else 0.
+        after: whether it comes after a whole picture of the earlier state: the camera froze.
         poses: bounds on median and 99th percentile of the centre's error [mm], median of yaw's [°].
     """
 
@@ -108,6 +111,7 @@ class PictureSet:
     between: bool = False
     found: int | None = None
     cameras: int = 0
+    after: bool = False
     note: str | None = None
 
 
@@ -142,10 +146,11 @@ def _of_masks_alone(kind: str, strength: int, damage: Damage = no_depth) -> Pict
 
 
 def _damaged(name: str, what: str, damage: Damage, mask_source: str = RGBD) -> PictureSet:
-    told = name not in UNTOLD
+    told, after = name not in UNTOLD, name in AFTER
+    note = "after a whole picture" if after else "a picture of another state looks the same"
     return PictureSet(
         f"damage_{name}", what, plain(6), 200, mask_source=mask_source, damage=damage, told=told,
-        note=None if told else "a picture of another state of the table looks the same",
+        note=None if told else note, after=after,
     )  # fmt: skip
 
 

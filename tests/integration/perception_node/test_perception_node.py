@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -49,6 +50,17 @@ def test_it_waits_for_the_extrinsics_and_says_so(
     assert message.status == SceneGraph.BAD_IMAGE
     assert "camera/extrinsics" in message.message
     assert camera.calibrate_and_show(frames[TOWERS]).status == SceneGraph.CONFIDENT
+
+
+def test_colours_that_froze_are_told_until_they_change(
+    camera: FakeCamera, frames: dict[Stacks, Frame]
+) -> None:
+    camera.calibrate_and_show(frames[TOWERS])
+    frozen = replace(frames[OTHER], rgb=frames[TOWERS].rgb)
+    message = camera.show(frozen)
+    assert message.status == SceneGraph.BAD_IMAGE
+    assert "camera/image_raw has been the same picture" in message.message
+    assert camera.show(frames[OTHER]).status == SceneGraph.CONFIDENT
 
 
 @pytest.mark.parametrize("damage", ["encoding", "size", "step", "depth", "distortion"])

@@ -3,10 +3,12 @@
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 from perception_scenes import PLACES, Solid, cast, looking_camera
 from scipy.spatial.transform import Rotation
 
@@ -170,3 +172,34 @@ def test_how_long_a_picture_has_been_the_same() -> None:
         ]
     ]
     assert seconds == [0.0, 0.5, 2.0, 0.0, 0.0, 2.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.003])
+def test_colours_that_stay_while_depth_moves_are_frozen(noise: float) -> None:
+    camera, rng = looking_camera(), np.random.default_rng(0)
+    rgb = picture(camera, BLOCKS).rgb
+
+    def depth(solids: list[Solid]) -> NDArray[np.float64]:
+        exact, _ = cast(solids, camera)
+        return exact + rng.normal(0.0, noise, exact.shape)
+
+    continuity = Continuity()
+    assert continuity.frozen_colors(0, rgb, depth(BLOCKS)) == 0.0
+    assert continuity.frozen_colors(10**8, rgb, depth(BLOCKS)) == 0.0
+    assert continuity.frozen_colors(2 * 10**8, rgb, None) == 0.0
+    assert continuity.frozen_colors(3 * 10**8, rgb, depth(BLOCKS[:-1])) == pytest.approx(0.3)
+    other = picture(camera, BLOCKS[:-1]).rgb
+    assert continuity.frozen_colors(4 * 10**8, other, depth(BLOCKS[:-1])) == 0.0
+    assert continuity.frozen_colors(5 * 10**8, other, depth(BLOCKS)) == pytest.approx(0.1)
+
+
+def test_edges_of_depth_that_flicker_do_not_freeze_colours() -> None:
+    camera, rng = looking_camera(), np.random.default_rng(1)
+    seen = picture(camera, BLOCKS)
+    assert seen.depth is not None
+    rim = cv2.morphologyEx(seen.depth, cv2.MORPH_GRADIENT, np.ones((3, 3))) > 0.02
+    continuity = Continuity()
+    for frame in range(5):
+        taken = np.where(rim & (rng.random(rim.shape) < 0.5), seen.depth + 0.3, seen.depth)
+        taken[rng.random(rim.shape) < 0.1] = np.nan
+        assert continuity.frozen_colors(frame * 10**8, seen.rgb, taken) == 0.0

@@ -24,7 +24,7 @@ from tamp_runtime.qos import LATCHED, NEWEST
 from tamp_runtime.subscriptions import AdaptiveSubscription
 
 from .calibration import Calibration, LensModel
-from .continuity import Continuity
+from .continuity import FROZEN_COLORS, Continuity
 from .conversions import frame_pose_from_message, lens_from_message
 from .errors import BadImageError, with_topics_of
 from .frame_pairing import FramePairing, StampedSet
@@ -149,6 +149,8 @@ class CameraTopics:
         except BadImageError as error:
             raise BadImageError(with_topics_of(self.name, str(error))) from error
         self.picture = observation.rgb
+        if seconds := self.continuity.frozen_colors(frame.stamp, rgb, depth):
+            raise BadImageError(f"{self._topics['image']} {FROZEN_COLORS} ({seconds:.1f} s)")
         return observation, self.continuity.seconds_unchanged(frame.stamp, rgb, depth)
 
     def _pixels(self, stream: str, message: Image | None) -> Any:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import zlib
 from typing import Any, Final
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,6 +34,14 @@ _ENOUGH: Final = 80
 #: Of those that tell, so many have to say that the camera moved. Where only it moved nearly all do,
 #: and still half of them where it turned back to what it moved away from; else a seventh at most.
 _MANY: Final = 1 / 3
+#: Depths that differ by more are of other things, whatever the noise [m], and as a share of them.
+_OTHER_DEPTH: Final = (0.02, 0.04)
+FROZEN_COLORS: Final = (
+    "has been the same picture to the last bit while depth shows that things moved; start the "
+    "camera's driver anew"
+)
+#: Least area of what moved, in pixels, without a rim two pixels wide: edges of depth flicker.
+_AREA: Final = 16
 #: A calibration by which blocks stand so much nearer to their places is the right one [m].
 _NEARER: Final = 0.008
 
@@ -44,6 +53,8 @@ class Continuity:
         self._understood: Observation | None = None
         self._aside: float | None = None
         self._stamp = self._content = self._since = 0
+        self._colors: tuple[int, int] | None = None
+        self._depth: NDArray[np.floating] | None = None
 
     def understand(self, observation: Observation, graph: SceneGraph, stamp: int) -> None:
         """Remembers an observation that made a confident graph.
@@ -88,6 +99,29 @@ class Continuity:
             "is; if this one is right, restart perception_node"
         )
 
+    def frozen_colors(
+        self, stamp: int, rgb: NDArray[np.uint8], depth: NDArray[np.floating] | None
+    ) -> float:
+        """For how long colours have been the same while depth shows that things moved [s].
+
+        Args:
+            stamp: when both were taken [ns].
+            rgb, depth: as the camera delivered them, shapes (h, w, 3) and (h, w) [m].
+
+        Returns:
+            0 where colours changed, nothing moved, or depth is not known.
+        """
+        if depth is None:
+            return 0.0
+        content = zlib.crc32(np.ascontiguousarray(rgb[::_ROWS]).data)
+        known, before = self._colors, self._depth
+        if known is None or before is None or known[0] != content or stamp < known[1]:
+            self._colors, self._depth = (content, stamp), depth
+            return 0.0
+        if before.shape != depth.shape or not _other_things(before, depth):
+            return 0.0
+        return (stamp - known[1]) / 1e9
+
     def seconds_unchanged(self, stamp: int, *pictures: NDArray[Any] | None) -> float:
         """For how long every picture has been this one, by the bits of some rows [s].
 
@@ -102,6 +136,18 @@ class Continuity:
         if content != self._content or stamp < self._since:
             self._content, self._since = content, stamp
         return (stamp - self._since) / 1e9
+
+
+def _other_things(before: NDArray[np.floating], now: NDArray[np.floating]) -> bool:
+    """Whether depth shows other things than before; a pixel without depth tells nothing."""
+    with np.errstate(invalid="ignore"):
+        nearest = np.minimum(before, now)
+        apart = np.abs(before - now) > _OTHER_DEPTH[0] + _OTHER_DEPTH[1] * nearest
+        apart &= np.isfinite(nearest) & (nearest > 0.0)
+    if np.count_nonzero(apart) < _AREA:
+        return False
+    inner = cv2.erode(apart.astype(np.uint8), np.ones((5, 5), np.uint8))
+    return bool(np.count_nonzero(inner) >= _AREA)
 
 
 def _aside(graph: SceneGraph) -> float | None:
