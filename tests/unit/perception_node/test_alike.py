@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -10,7 +12,14 @@ from hypothesis import strategies as st
 from perception_node.alike import Alike
 from perception_node.names import unique_names
 from perception_node.pipeline import Perceived
-from scene_graph import GraphStatus, SceneGraph, SceneObject, up_relations
+from scene_graph import (
+    HIDDEN,
+    GraphStatus,
+    SceneGraph,
+    SceneObject,
+    hidden_name,
+    up_relations,
+)
 
 PLACES = (-0.15, 0.0, 0.15)
 COLORS = ("red", "red", "red", "blue", "blue", "green")
@@ -108,3 +117,19 @@ def test_a_message_says_the_names_that_the_graph_has() -> None:
     seen, _ = picture([[], [1], [0]], rng)
     told = Perceived(seen.graph, seen.status, "red_box and red_box_2 stand")
     assert alike.named(told, 2 * SECOND).message == "red_box_2 and red_box stand"
+
+
+def test_what_is_hidden_keeps_the_name_of_its_place() -> None:
+    rng, alike = np.random.default_rng(0), Alike()
+    for stamp, places in enumerate(([1], [1, 2], [0, 2], [2])):
+        perceived, _ = picture([[0, 1], [2, 3], [4, 5]], rng, GraphStatus.HIDDEN)
+        hidden = tuple(
+            SceneObject(
+                hidden_name(place), HIDDEN, "box", (0.4, PLACES[place], 0.1), size=(0.06, 0.06, 0.1)
+            )
+            for place in places
+        )
+        graph = replace(perceived.graph, objects=(*hidden, *perceived.graph.objects))
+        named = alike.named(replace(perceived, graph=graph), stamp * SECOND)
+        seen = {item.name for item in named.graph.objects if item.color == HIDDEN}
+        assert seen == {hidden_name(place) for place in places}

@@ -8,7 +8,7 @@ import re
 from dataclasses import replace
 from typing import Final
 
-from scene_graph import GraphStatus, SceneObject, object_name
+from scene_graph import GraphStatus, SceneObject, is_hidden, object_name
 
 from .pipeline import Perceived
 
@@ -56,6 +56,8 @@ class Alike:
         self._stamp = stamp
         kinds: dict[str, list[SceneObject]] = {}
         for item in graph.objects:
+            if is_hidden(item.name):  # no block: it is named by its place
+                continue
             if not all(item.size):
                 return perceived
             kinds.setdefault(object_name(item.color, item.shape), []).append(item)
