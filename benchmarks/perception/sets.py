@@ -87,7 +87,8 @@ class PictureSet:
         found: how many places are to be found, 0: as many as stacks; None: they are given.
         between: whether colours may be in doubt, and what is published of that is counted.
         cameras: how many are looked through, where it is asked how much more several see; else 0.
-        after: whether it comes after a whole picture of the earlier state: the camera froze.
+        after: whether it comes after a whole picture of the earlier state, and depth of the first
+            move from there: what a camera whose colours froze sends.
         poses: bounds on median and 99th percentile of the centre's error [mm], median of yaw's [°].
     """
 
@@ -147,7 +148,9 @@ def _of_masks_alone(kind: str, strength: int, damage: Damage = no_depth) -> Pict
 
 def _damaged(name: str, what: str, damage: Damage, mask_source: str = RGBD) -> PictureSet:
     told, after = name not in UNTOLD, name in AFTER
-    note = "after a whole picture" if after else "a picture of another state looks the same"
+    note = "a picture of another state looks the same"
+    if after:
+        note = "after a whole picture, and depth of the first move from there"
     return PictureSet(
         f"damage_{name}", what, plain(6), 200, mask_source=mask_source, damage=damage, told=told,
         note=None if told else note, after=after,

@@ -188,6 +188,7 @@ def test_colours_that_stay_while_depth_moves_are_frozen(noise: float) -> None:
     assert continuity.frozen_colors(10**8, rgb, depth(BLOCKS)) == 0.0
     assert continuity.frozen_colors(2 * 10**8, rgb, None) == 0.0
     assert continuity.frozen_colors(3 * 10**8, rgb, depth(BLOCKS[:-1])) == pytest.approx(0.3)
+    assert continuity.frozen_colors(35 * 10**7, rgb, depth(BLOCKS)) == pytest.approx(0.35)
     other = picture(camera, BLOCKS[:-1]).rgb
     assert continuity.frozen_colors(4 * 10**8, other, depth(BLOCKS[:-1])) == 0.0
     assert continuity.frozen_colors(5 * 10**8, other, depth(BLOCKS)) == pytest.approx(0.1)

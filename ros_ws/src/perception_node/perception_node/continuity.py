@@ -55,6 +55,7 @@ class Continuity:
         self._stamp = self._content = self._since = 0
         self._colors: tuple[int, int] | None = None
         self._depth: NDArray[np.floating] | None = None
+        self._frozen = False
 
     def understand(self, observation: Observation, graph: SceneGraph, stamp: int) -> None:
         """Remembers an observation that made a confident graph.
@@ -102,7 +103,10 @@ class Continuity:
     def frozen_colors(
         self, stamp: int, rgb: NDArray[np.uint8], depth: NDArray[np.floating] | None
     ) -> float:
-        """For how long colours have been the same while depth shows that things moved [s].
+        """For how long colours have been the same while depth has shown that things moved [s].
+
+        Once it has, until colours change: an arm that is home again leaves depth as it was, and
+        what it moved may be as high as what stood there.
 
         Args:
             stamp: when both were taken [ns].
@@ -116,11 +120,11 @@ class Continuity:
         content = zlib.crc32(np.ascontiguousarray(rgb[::_ROWS]).data)
         known, before = self._colors, self._depth
         if known is None or before is None or known[0] != content or stamp < known[1]:
-            self._colors, self._depth = (content, stamp), depth
+            self._colors, self._depth, self._frozen = (content, stamp), depth, False
             return 0.0
-        if before.shape != depth.shape or not _other_things(before, depth):
-            return 0.0
-        return (stamp - known[1]) / 1e9
+        if before.shape == depth.shape and not self._frozen:
+            self._frozen = _other_things(before, depth)
+        return (stamp - known[1]) / 1e9 if self._frozen else 0.0
 
     def seconds_unchanged(self, stamp: int, *pictures: NDArray[Any] | None) -> float:
         """For how long every picture has been this one, by the bits of some rows [s].
