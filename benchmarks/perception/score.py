@@ -18,6 +18,7 @@ from results_file import Row, wilson_interval
 
 from perception.color_clusters import find_by_color
 from perception.damages import Shot
+from perception.earlier import earlier_state, on_the_way, seen_frozen
 from perception.found_truth import on_found_places, place_errors
 from perception.hidden_truth import is_partly_right
 from perception.readings import reading_rows, relations_of
@@ -32,12 +33,12 @@ from perception_node import (
     PerceptionConfig,
     Segmenter,
 )
-from perception_node.continuity import FROZEN_COLORS, Continuity
+from perception_node.continuity import FROZEN_COLORS
 from perception_node.joined_views import JoinedViews
 from perception_node.segment import RGB
 from perception_node.visual_module.coordinates import Locator
-from scene_graph import UNKNOWN, GraphStatus, Relation, SceneGraph, SceneObject, Stacks
-from sim_node import Frame, World, random_arrangement, sense, true_scene_graph
+from scene_graph import UNKNOWN, GraphStatus, Relation, SceneGraph, SceneObject
+from sim_node import World, sense, true_scene_graph
 from sim_node.scene.cameras import FIRST
 
 #: Every set is held to no more than this share of graphs that are accepted and wrong.
@@ -115,10 +116,10 @@ def answer_of(drawn: Drawn, item: PictureSet, locator: Locator, world: World) ->
         others[camera.name] = view_of(camera, taken).observation(taken.rgb, None, taken.depth)
     if item.damage is not None:
         rng = np.random.default_rng([drawn.seed, 13])
-        earlier = functools.partial(_other_state, world, drawn)
+        earlier = functools.partial(earlier_state, world, drawn)
         observation = item.damage(observation, Shot(exact.labels, earlier, rng))
     answer, seen = answer_to(drawn.seed, observation, truth, item, locator, others)
-    if item.after and _is_frozen(earlier(), _on_the_way(world, drawn), observation):
+    if item.after and seen_frozen(earlier(), on_the_way(world, drawn), observation):
         status = GraphStatus.BAD_IMAGE.name
         answer = replace(answer, confident=False, status=status, message=FROZEN_COLORS, readings=0)
     if answer.hides:
@@ -212,37 +213,6 @@ def answers_of(item: PictureSet, locator: Locator, numbers: Iterable[int]) -> It
         entries = list(group)
         with entries[0].world() as world:
             yield from (answer_of(entry, item, locator, world) for entry in entries)
-
-
-def _is_frozen(earlier: Frame, way: Frame, now: Observation) -> bool:
-    """Whether the node says so of colours of earlier that come with newer depth, twice."""
-    continuity = Continuity()
-    for stamp, depth in enumerate((earlier.depth, way.depth)):
-        continuity.frozen_colors(10**8 * stamp, earlier.rgb, depth)
-    return continuity.frozen_colors(2 * 10**8, now.rgb, now.depth) > 0.0
-
-
-def _other_state(world: World, drawn: Drawn) -> Frame:
-    """A picture of another state of the same blocks."""
-    world.reset(_other_layout(drawn), drawn.seed)
-    return world.render()
-
-
-def _on_the_way(world: World, drawn: Drawn) -> Frame:
-    """A picture after the first move from there: the highest block of some stack on the next."""
-    stacks = [list(stack) for stack in _other_layout(drawn)]
-    source = max(range(len(stacks)), key=lambda place: len(stacks[place]))
-    stacks[(source + 1) % len(stacks)].append(stacks[source].pop())
-    world.reset(tuple(map(tuple, stacks)), drawn.seed)
-    return world.render()
-
-
-def _other_layout(drawn: Drawn) -> Stacks:
-    names = [name for stack in drawn.layout for name in stack]
-    rng = np.random.default_rng([drawn.seed, 14])
-    while (layout := random_arrangement(names, rng, len(drawn.layout))) == drawn.layout:
-        pass
-    return layout
 
 
 def _true_blocks(world: World) -> dict[int, tuple[str, str]]:
