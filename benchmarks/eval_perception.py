@@ -21,7 +21,8 @@ from pathlib import Path
 from typing import Any
 
 import torch
-from perception.score import Answer, answers_of, confidence_rows, refusals, rows_of
+from perception.answers import Answer, answers_of
+from perception.score import confidence_rows, refusals, rows_of
 from perception.sets import PictureSet, UnknownSetError, sets_named
 from results_file import Row, print_rows, quick, write_result
 from tqdm import tqdm

@@ -17,8 +17,9 @@ from pathlib import Path
 from typing import Final
 
 import torch
+from perception.answers import Answer, answer_to
 from perception.scenes import plain
-from perception.score import Answer, answer_to, refusals, rows_of
+from perception.score import refusals, rows_of
 from perception.sets import REAL_DEPTH, PictureSet
 from photo.render import BlenderError, photographs
 from results_file import Row, print_rows, quick, write_result

@@ -15,8 +15,8 @@ from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 import torch
+from perception.answers import Answer, answers_of
 from perception.scenes import FIRST_SEED
-from perception.score import Answer, answers_of
 from perception.sets import SETS, sets_named
 from results_file import source_commit
 from tqdm import tqdm

@@ -9,10 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import yaml
+from perception.answers import Answer
 from perception.found_truth import on_found_places, place_errors
 from perception.readings import reading_rows, relations_of
 from perception.scenes import CLUTTER_GAP
-from perception.score import Answer, refusals, rows_of
+from perception.score import refusals, rows_of
 from perception.sets import SETS, PictureSet, UnknownSetError, sets_named
 from perception.views import view_of
 
