@@ -43,8 +43,6 @@ UNSEEN_COLORS: Final = tuple(color for color in COLORS if color not in BASIC_COL
 HALF_HIDDEN: Final = "half of one block lost"
 #: Damages after which a picture may be as one of another state: only a moment before could tell.
 UNTOLD: Final = ("mirrored", "depth_frozen", "color_frozen")
-#: Those of them that are measured with that moment.
-AFTER: Final = ("color_frozen",)
 #: What is done with masks where depth is there as well.
 SNAPPED: Final = "masks are made those of what is found in colour and depth: little is left"
 #: What is looked through, where it is asked how much more two cameras see.
@@ -147,13 +145,10 @@ def _of_masks_alone(kind: str, strength: int, damage: Damage = no_depth) -> Pict
 
 
 def _damaged(name: str, what: str, damage: Damage, mask_source: str = RGBD) -> PictureSet:
-    told, after = name not in UNTOLD, name in AFTER
-    note = "a picture of another state looks the same"
-    if after:
-        note = "after a whole picture, and depth of the first move from there"
+    told = name not in UNTOLD
     return PictureSet(
         f"damage_{name}", what, plain(6), 200, mask_source=mask_source, damage=damage, told=told,
-        note=None if told else note, after=after,
+        note=None if told else "a picture of another state of the table looks the same",
     )  # fmt: skip
 
 
@@ -311,6 +306,9 @@ SETS: Final = (
                colored(UNSEEN_COLORS, shapes=("box", "cylinder")), 500,
                mask_source=SEGMENTATION_TOPIC, damage=no_depth, shapes=0.99),
     *(_damaged(name, *entry) for name, entry in OF_PICTURES.items()),
+    replace(_damaged("color_frozen", *OF_PICTURES["color_frozen"]), name="damage_color_froze",
+            what="colours froze before the first move, depth not", after=True,
+            note="a node has seen the whole picture before, and depth of the move"),
     *(_damaged(name, *entry, SEGMENTATION_TOPIC) for name, entry in OF_LABELS.items()),
     *(replace(_damaged(name, *OF_PICTURES[name], RGB), name=f"rgb_{name}",
               what=f"colour alone, {OF_PICTURES[name][0]}")
