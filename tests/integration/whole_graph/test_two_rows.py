@@ -8,7 +8,6 @@ from typing import Any
 
 import pytest
 from judge import Judge
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 from tamp_interfaces.action import AchieveGoal
 from tamp_interfaces.srv import PlanToGoal
@@ -40,7 +39,7 @@ cameras:
 def graph_of(ros_context: Any, scene: str, **perception: Any) -> Judge:
     """The four nodes in a scene with the layout above, and who knows the truth."""
     context = ros_context.context
-    told: dict[type[Node], dict[str, Any]] = {
+    told: dict[Any, dict[str, Any]] = {
         SimNode: {"scene": scene, "layout": LAYOUT},
         PerceptionNode: {"use_sim_time": True, "stack_positions": PLACES, **perception},
         PlannerNode: {"use_sim_time": True},
