@@ -25,6 +25,7 @@ from planner_node.loop import (
 from planner_node.loop.plan_watch import PlanSight
 from planner_node.settings import Settings
 from scene_graph import (
+    HIDDEN,
     ONE_ROW,
     GraphStatus,
     Move,
@@ -33,6 +34,7 @@ from scene_graph import (
     SceneObject,
     Stacks,
     apply_move,
+    is_hidden,
     split_object_name,
     up_relations,
 )
@@ -65,7 +67,12 @@ def sighting_of(stacks: Stacks, stamp: int = 0, **fields: Any) -> Sighting:
     """What perception reports of a state; ``fields`` are those of Sighting."""
     names = sorted(name for stack in stacks for name in stack)
     graph = SceneGraph(
-        tuple(SceneObject(name, *split_object_name(name)) for name in names),
+        tuple(
+            SceneObject(name, HIDDEN, "box")
+            if is_hidden(name)
+            else SceneObject(name, *split_object_name(name))
+            for name in names
+        ),
         up_relations(stacks),
         tuple(Place(index, (0.0, 0.1 * index, 0.0)) for index in range(len(stacks))),
         confidence=fields.pop("confidence", 0.9),

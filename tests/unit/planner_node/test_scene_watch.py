@@ -227,3 +227,51 @@ def test_fault_13_what_perception_refuses_is_told_however_rarely_it_says_so() ->
     watched.see(8.0, status=GraphStatus.BAD_IMAGE, message="no camera/segmentation arrives")
     with pytest.raises(NotConfidentError, match="no camera/segmentation arrives"):
         watched.watch.latest()
+
+
+BEHIND = (("red_box", "blue_box"), ("hidden_stack1",), ())
+
+
+class Asked(Watched):
+    """Something is hidden, and a camera was asked to look from elsewhere."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        self.clock.on_wait = self.see_less
+        self.see_less()
+
+    def see_less(self) -> None:
+        stamp = self.clock.ros_now()
+        fields = {"status": GraphStatus.HIDDEN, "view_requested": True}
+        self.watch.receive(sighting_of(BEHIND, stamp, **fields))
+
+    def waited(self) -> float:
+        """How long it waits for a scene [s]."""
+        start = self.clock.seconds
+        self.watch.wait(never)
+        return self.clock.seconds - start
+
+
+def test_a_camera_that_was_asked_to_look_from_elsewhere_is_waited_for() -> None:
+    asked = Asked(view_timeout=3.0)
+    there = asked.clock.seconds + 1.0
+    asked.clock.on_wait = lambda: asked.see() if asked.clock.seconds > there else asked.see_less()
+    assert asked.watch.wait(never).stacks == START
+
+
+def test_one_that_does_not_go_there_is_waited_for_once() -> None:
+    asked = Asked(view_timeout=3.0)
+    assert 3.0 <= asked.waited() < 4.0
+    assert asked.watch.wait(never).hidden == (1,)
+    assert asked.waited() == 0.0
+    asked.see()
+    assert asked.waited() == 0.0
+    asked.see_less()  # what it was asked before is over
+    assert asked.waited() >= 3.0
+
+
+def test_what_is_hidden_but_remembered_needs_no_other_view() -> None:
+    asked = Asked(view_timeout=3.0)
+    remembered = asked.watch.wait(never, recall=lambda scene: replace(scene, stacks=START))
+    assert remembered.stacks == START
+    assert asked.clock.seconds == Asked().clock.seconds

@@ -30,6 +30,7 @@ from tamp_runtime.messages.images import (
     image_from_array,
     labels_from_image,
 )
+from tamp_runtime.messages.stamps import nanoseconds
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.presence import Presence
@@ -71,6 +72,8 @@ from .visual_module.weights import DEFAULT_WEIGHTS, load_weights
 SILENCE: Final = 2.0
 #: Pictures that have been the same for so long may be an old one, sent again and again [s].
 FROZEN: Final = 2.0
+#: A camera is where it was asked to be by so much before its pictures from there are used [ns].
+ARRIVING: Final = 2 * 10**9
 
 
 class PerceptionNode(Node):
@@ -127,6 +130,7 @@ class PerceptionNode(Node):
         self._told = ""
         self._last_seen: PinholeCamera | None = None
         self._asked: NDArray[np.float64] | None = None
+        self._asked_at = 0
         names = self._values["cameras"]
         self._joined = JoinedViews(self._kept.perception, names[0]) if names[1:] else None
         self._create_interfaces()
@@ -244,8 +248,8 @@ class PerceptionNode(Node):
             perceived = replace(
                 perceived, message="; ".join(filter(None, (perceived.message, note)))
             )
-        self._publish(perceived, header, frame.arrival)
-        self._ask_for_view(perceived.graph, header)
+        asked = self._ask_for_view(perceived.graph, header)
+        self._publish(perceived, header, frame.arrival, asked)
         rgb = main.picture
         if rgb is not None and self.context.ok() and self._drawings.get_subscription_count():
             drawing = draw_scene_graph(rgb, perceived)
@@ -293,20 +297,28 @@ class PerceptionNode(Node):
             perceived = replace(perceived, message=perceived.message + hint)
         return replace(perceived, message="; ".join(filter(None, (perceived.message, *bad))))
 
-    def _ask_for_view(self, graph: SceneGraph, header: Header) -> None:
-        """Says from where the last camera would see what is hidden, whenever that is elsewhere."""
-        camera = self._last_seen
-        if camera is None or self._views is None or not self._views.get_subscription_count():
-            return
+    def _ask_for_view(self, graph: SceneGraph, header: Header) -> bool:
+        """Says from where the last camera would see what is hidden, whenever that is elsewhere.
+
+        Returns whether it may be about to be seen so.
+        """
+        if self._views is None or not self._views.get_subscription_count():
+            return False
+        stamp, camera = nanoseconds(header.stamp), self._last_seen
+        arriving = 0 <= stamp - self._asked_at < ARRIVING
+        if camera is None:
+            return arriving
         view = next_view(graph, camera, self._kept.perception.config)
-        if view is None or np.allclose(
-            view.world_from_optical, camera.world_from_optical, atol=0.01
-        ):
-            return
-        if self._asked is None or not np.allclose(self._asked, view.world_from_optical, atol=0.01):
+        if view is None:
+            return arriving
+        there = view.world_from_optical
+        if np.allclose(there, camera.world_from_optical, atol=0.01):
+            return arriving
+        if self._asked is None or not np.allclose(self._asked, there, atol=0.01):
             self.get_logger().info(f"{self._last_camera} is asked to look at what is hidden")
-        self._asked = view.world_from_optical
-        self._views.publish(PoseStamped(header=header, pose=pose_to_message(self._asked)))
+        self._asked, self._asked_at = there, stamp
+        self._views.publish(PoseStamped(header=header, pose=pose_to_message(there)))
+        return True
 
     def _record(self, observation: Observation, perceived: Perceived) -> None:
         if self._recorder is None:
@@ -330,11 +342,15 @@ class PerceptionNode(Node):
     def _frame_id(self) -> str:
         return self._main.calibration.pose_frame
 
-    def _publish(self, perceived: Perceived, header: Header, arrival: float) -> None:
+    def _publish(
+        self, perceived: Perceived, header: Header, arrival: float, view_requested: bool = False
+    ) -> None:
         if not self.context.ok():
             return  # the node is being stopped
         seconds = time.perf_counter() - arrival
-        self._graphs.publish(perceived_to_message(perceived, header, seconds))
+        message = perceived_to_message(perceived, header, seconds)
+        message.view_requested = view_requested
+        self._graphs.publish(message)
         if perceived.status is not self._status or self._moments.note() != self._told:
             self._status, self._told = perceived.status, self._moments.note()
             # One call a severity: rclpy's logger refuses two from the same line.

@@ -48,6 +48,7 @@ def sighting_from_message(message: SceneGraphMsg) -> Sighting:
         nanoseconds(message.header.stamp),
         message.header.frame_id,
         defect,
+        message.view_requested,
     )
 
 

@@ -100,6 +100,15 @@ PARAMETERS: Final = (
         3600.0,
     ),
     ParameterSpec(
+        "view_timeout",
+        _DEFAULTS.view_timeout,
+        "achieve_goal waits this long for a camera that was asked to look at what is hidden from "
+        "elsewhere, before blocks are moved aside to see it, and if in vain, no longer "
+        "[s, wall time].",
+        0.0,
+        3600.0,
+    ),
+    ParameterSpec(
         "image_service_timeout",
         _DEFAULTS.image_service_timeout,
         "Perception has this long to interpret a goal image [s, wall time].",

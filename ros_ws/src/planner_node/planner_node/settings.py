@@ -41,6 +41,7 @@ class Settings:
     min_confidence: float = 0.0
     graph_max_age: float = 5.0
     perceive_timeout: float = 15.0
+    view_timeout: float = 3.0
     image_service_timeout: float = 10.0
     motion_accept_timeout: float = 30.0
     motion_silence_timeout: float = 15.0

@@ -34,6 +34,7 @@ class Sighting:
         stamp: when its image was taken, in ROS time [ns].
         frame_id: the frame of all positions.
         defect: why the graph could not be read, or empty.
+        view_requested: whether a camera was asked to look at what is hidden from elsewhere.
     """
 
     graph: SceneGraph
@@ -42,6 +43,7 @@ class Sighting:
     stamp: int = 0
     frame_id: str = ""
     defect: str = ""
+    view_requested: bool = False
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,7 @@ class Scene:
         stacks: every object of the graph stands on one; what stands for hidden blocks among them,
             see :mod:`scene_graph.hidden`.
         lying: where blocks lie that are before the places, and in nobody's way, by name [m].
+        view_requested: as in :class:`Sighting`.
     """
 
     graph: SceneGraph
@@ -60,6 +63,7 @@ class Scene:
     stamp: int = 0
     frame_id: str = ""
     lying: Mapping[str, Point] = field(default_factory=dict)
+    view_requested: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -131,4 +135,4 @@ def scene_in(sighting: Sighting, min_confidence: float = 0.0, may_hide: bool = F
         raise NotConfidentError(
             f"the scene graph is incomplete: objects and relations differ: {odd}"
         )
-    return Scene(graph, stacks, sighting.stamp, sighting.frame_id, lying)
+    return Scene(graph, stacks, sighting.stamp, sighting.frame_id, lying, sighting.view_requested)

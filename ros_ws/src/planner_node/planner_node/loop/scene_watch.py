@@ -37,12 +37,16 @@ class SceneWatch:
         self._newest: Sighting | None = None
         self._readings = Readings()
         self._heard = 0.0
+        self._view_asked = 0.0
 
     def receive(self, sighting: Sighting) -> None:
         """Takes what perception reports in place of what it reported before."""
         with self._arrived:
+            now = self._clock.now()
+            if sighting.view_requested and not (self._raw and self._raw.view_requested):
+                self._view_asked = now
             self._raw, self._newest = sighting, self._readings.named(sighting)
-            self._heard = self._clock.now()
+            self._heard = now
             self._arrived.notify_all()
 
     def answer(self, doubt: Doubt, color: str) -> None:
@@ -99,6 +103,9 @@ class SceneWatch:
     ) -> Scene:
         """Like :meth:`latest`, but waits up to ``perceive_timeout`` for such a scene.
 
+        Where a camera was asked to look at what is hidden from elsewhere, it is given
+        ``view_timeout`` to go there: a view costs less than the moves that uncover a block.
+
         Raises:
             NoSceneGraphError, NotConfidentError, ObjectLostError: what was wrong when the time was
                 over.
@@ -109,12 +116,23 @@ class SceneWatch:
             if cancelled():
                 raise CancelledError("cancelled while waiting for a scene graph")
             try:
-                return self.latest(after, needed, recall)
+                scene = self.latest(after, needed, recall)
+                if not self._may_be_seen(scene):
+                    return scene
             except (NoSceneGraphError, NotConfidentError, ObjectLostError):
                 if self._clock.now() >= deadline:
                     raise
             with self._arrived:
                 self._clock.wait(self._arrived, POLL_SECONDS)
+
+    def _may_be_seen(self, scene: Scene) -> bool:
+        """Whether a camera may be on its way to where it sees what is hidden in the scene.
+
+        Where nobody moves it the request goes on, and is waited for once.
+        """
+        with self._arrived:
+            waited = self._clock.now() - self._view_asked
+        return scene.view_requested and bool(scene.hidden) and waited < self._settings.view_timeout
 
     def _check_time(self, sighting: Sighting, after: int, silence: float) -> None:
         now, stamp = self.now(), sighting.stamp
