@@ -31,6 +31,7 @@ from .facets import (
     sums,
     without_leaks,
 )
+from .levels import levels
 from .pieces import Heights, ends_by_number, spread
 from .region import Region, look_at
 from .segments import Segments
@@ -73,6 +74,7 @@ SHARED_HEIGHT: Final = 0.4
 LEVEL: Final = 0.0025
 #: Heights that differ by less are the same [m].
 SAME_HEIGHT: Final = 0.006
+NEARLY: Final = 0.003
 #: Normals of upright facets with a greater cosine between them are of one plane.
 ONE_PLANE: Final = 0.92
 #: Middles of two faces of one block are nearer than this, seen from above [m].
@@ -183,9 +185,13 @@ def _take_strips(labels: NDArray[np.uint16], pieces: Facets, region: Region, wid
     height = region.points[..., 2]
     numbers, values = labels.astype(np.int32).ravel(), height.reshape(-1, 1)
     low, high = ends_by_number(numbers, values, int(labels.max()) + 1)
-    as_high = Heights(height, low[:, 0] - SAME_HEIGHT, high[:, 0] + SAME_HEIGHT)
+    ends = levels(labels, region.points, low[:, 0] - SAME_HEIGHT, high[:, 0] + SAME_HEIGHT)
+    with np.errstate(invalid="ignore"):
+        wrong = (height < ends[0][labels] - NEARLY) | (height > ends[1][labels] + NEARLY)
+    as_high = Heights(height, ends[0] - NEARLY, ends[1] + NEARLY)
     lower = len(labels) - len(pieces.ids)
     pieces = replace(pieces, ids=np.pad(pieces.ids, ((0, lower), (0, 0))))
+    labels[wrong & (pieces.ids > 0)] = 0
     near = on_one_body(region.points, region.depth)
     alike = [link & same for link, same in zip(near, pieces.links())]
     for links, heights in ((alike, as_high), (near, as_high), (near, None)):
