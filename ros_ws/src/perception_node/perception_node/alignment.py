@@ -87,7 +87,7 @@ def aligned(observation: Observation, box: tuple[slice, slice]) -> Observation:
     reach = smear + FILL_REACH
     filled, moved, inner = _moved_to_colour(measured, part, smear)
     depth, sure = observation.depth.astype(np.float32), np.ones(observation.depth.shape, bool)
-    if moved <= MOVED[0] and mixed <= MIXED[0]:
+    if moved <= MOVED[0]:
         depth[box] = fill(measured, part, reach)
         sure[box] = ~np.isnan(measured)
     else:

@@ -185,17 +185,21 @@ def _take_strips(labels: NDArray[np.uint16], pieces: Facets, region: Region, wid
     height = region.points[..., 2]
     numbers, values = labels.astype(np.int32).ravel(), height.reshape(-1, 1)
     low, high = ends_by_number(numbers, values, int(labels.max()) + 1)
-    ends = levels(labels, region.points, low[:, 0] - SAME_HEIGHT, high[:, 0] + SAME_HEIGHT)
+    none = np.full(len(low), np.inf)
+    lowest, highest = levels(labels, region.points, -none, none)
     with np.errstate(invalid="ignore"):
-        wrong = (height < ends[0][labels] - NEARLY) | (height > ends[1][labels] + NEARLY)
-    as_high = Heights(height, ends[0] - NEARLY, ends[1] + NEARLY)
+        wrong = (height < lowest[labels] - NEARLY) | (height > highest[labels] + NEARLY)
     lower = len(labels) - len(pieces.ids)
     pieces = replace(pieces, ids=np.pad(pieces.ids, ((0, lower), (0, 0))))
-    labels[wrong & (pieces.ids > 0)] = 0
+    strips = pieces.ids > 0
+    labels[wrong & strips] = 0
+    within = np.maximum(lowest - NEARLY, low[:, 0] - SAME_HEIGHT), np.minimum(highest + NEARLY, high[:, 0] + SAME_HEIGHT)
+    as_high = Heights(height, *within)
+    not_beyond = Heights(height, lowest - NEARLY, highest + NEARLY)
     near = on_one_body(region.points, region.depth)
     alike = [link & same for link, same in zip(near, pieces.links())]
-    for links, heights in ((alike, as_high), (near, as_high), (near, None)):
-        spread(labels, pieces.ids > 0, width, links, heights)
+    for links, heights in ((alike, as_high), (near, as_high), (near, not_beyond), (None, not_beyond)):
+        spread(labels, strips, width, links, heights)
 
 
 def _grow_down(
@@ -285,8 +289,10 @@ def _group(facets: Facets, table: _Table) -> NDArray[np.intp]:
     # that of a small neighbour.
     difference = np.linalg.norm(table.chroma[first] - table.chroma[second], axis=1)
     alike_first = np.argsort(difference)
-    fitting = (difference < SLIVER_HUE) & _as_high(table, large, first, second)
-    alike_first = alike_first[fitting[alike_first]]
+    alike_first = alike_first[difference[alike_first] < SLIVER_HUE]
+    # What is taken in counts as high as what it belongs to, so that a row of small ones along the
+    # edge of a tower does not lead from one block to the next.
+    low, high = table.low[:, 2].copy(), table.high[:, 2].copy()
     taken = True
     while taken:
         taken = False
@@ -294,18 +300,12 @@ def _group(facets: Facets, table: _Table) -> NDArray[np.intp]:
             a, b = first[border], second[border]
             if large[a] == large[b]:
                 continue
-            small, neighbour = (b, a) if large[a] else (a, b)
-            groups[small] = groups[neighbour]
+            small, other = (b, a) if large[a] else (a, b)
+            if low[small] <= low[other] - LEAK or high[small] >= high[other] + LEAK:
+                continue
+            groups[small], low[small], high[small] = groups[other], low[other], high[other]
             large[small] = taken = True
     return groups
-
-
-def _as_high(table: _Table, large: Mask, a: NDArray[np.int64], b: NDArray[np.int64]) -> Mask:
-    """Whether of n pairs the small facet is nowhere higher or lower than the large one."""
-    small, other = np.where(large[a], b, a), np.where(large[a], a, b)
-    above = table.low[small, 2] > table.low[other, 2] - LEAK
-    below = table.high[small, 2] < table.high[other, 2] + LEAK
-    return np.asarray((above & below) | (large[a] == large[b]))
 
 
 def _can_be_one_block(table: _Table, a: NDArray[np.int64], b: NDArray[np.int64]) -> Mask:
