@@ -89,7 +89,7 @@ def aligned(observation: Observation, box: tuple[slice, slice]) -> Observation:
     depth, sure = observation.depth.astype(np.float32), np.ones(observation.depth.shape, bool)
     if moved <= MOVED[0]:
         depth[box] = fill(measured, part, reach)
-        sure[box] = ~np.isnan(measured)
+        sure[box] = ~np.isnan(measured) if mixed <= MIXED[0] else inner
     else:
         depth[box] = fill(filled, part, reach)
         sure[box] = inner
