@@ -70,8 +70,10 @@ SAME_LIGHT: Final = 0.12
 MAX_CONTRAST: Final = 1.1
 #: Two walls of one block have this part of the lower one's height in common.
 SHARED_HEIGHT: Final = 0.4
-#: The points of a level facet are spread less than this about their height [m].
+#: The points of a level facet are spread less than this about their height, as a standard deviation
+#: that follows from those between these percentages of them [m].
 LEVEL: Final = 0.0025
+QUARTILES: Final = (25.0, 75.0)
 #: Heights that differ by less are the same [m].
 SAME_HEIGHT: Final = 0.006
 NEARLY: Final = 0.003
@@ -252,7 +254,11 @@ def _measure(facets: Facets, look: Look, region: Region, smear: int, strip: int)
     normal = np.linalg.eigh(spread)[1][:, :, 0]
     # Of points that fill a face evenly these are its ends; a stray one does not move them far.
     reach = np.sqrt(3.0 * np.einsum("fii->fi", spread))
-    level = (np.sqrt(spread[:, 2, 2]) < LEVEL) & (np.abs(normal[:, 2]) > 0.6)
+    # By the middle half of the points: a lid may run down a side that looks like it.
+    ids, heights = facets.ids.ravel(), region.points[..., 2].reshape(-1, 1)
+    low, high = ends_by_number(ids, heights, facets.count + 1, QUARTILES)
+    with np.errstate(invalid="ignore"):
+        level = ((high - low)[:, 0] < 1.35 * LEVEL) & (np.abs(normal[:, 2]) > 0.6)
     wide = np.sqrt(spread[:, 0, 0] + spread[:, 1, 1]) > LEVEL
     return _Table(
         found.pixels,
