@@ -23,20 +23,18 @@ BESIDE: Final = 0.05
 MOST_WRONG: Final = 0.2
 
 
-def levels(
-    labels: NDArray[np.integer], points: NDArray[np.floating], low: Array, high: Array
-) -> tuple[Array, Array]:
-    """Between which heights the blocks are, where others stand on or under them.
+def levels(labels: NDArray[np.integer], points: NDArray[np.floating]) -> tuple[Array, Array]:
+    """Between which heights the blocks are that stand on others, or on which others stand.
 
     Args:
-        labels: shape (h, w).
+        labels: 0 of no block, shape (h, w).
         points: in world, NaN where they are not known, shape (h, w, 3) [m].
-        low, high: of each label where none does, the first of no block, shape (L,) [m].
 
     Returns:
-        Low and high, the height at which two meet for both, shape (L,) each.
+        Low and high by label, of two that meet the same height; infinite where none does [m].
     """
-    low, high = low.copy(), high.copy()
+    high = np.full(int(labels.max()) + 1, np.inf)
+    low = -high
     known = (labels > 0) & ~np.isnan(points[..., 2])
     names, own = labels[known], points[known]
     heights, middles = {}, {}

@@ -235,6 +235,12 @@ def ends_by_numpy(
     return found[0], found[1]
 
 
+def links_of(ids: Ids) -> list[Mask]:
+    """Which neighbours have the same number, other than 0, by axis: (h - 1, w), (h, w - 1)."""
+    pairs = [(ids[low], ids[high]) for low, high in map(sides, (0, 1))]
+    return [(first == second) & (first > 0) for first, second in pairs]
+
+
 def sides(axis: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
     """The two pixels of each pair of neighbours along an axis."""
     before = (slice(None),) * axis

@@ -8,7 +8,7 @@ large for a block, or hangs on something that is, is none: the arm, a hand, a wa
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 import cv2
@@ -27,14 +27,13 @@ from .facets import (
     Look,
     alike,
     find_facets,
-    on_one_body,
     sums,
     without_leaks,
 )
-from .levels import levels
-from .pieces import Heights, ends_by_number, spread
+from .pieces import ends_by_number
 from .region import Region, look_at
 from .segments import Segments
+from .strips import SAME_HEIGHT, take_strips
 from .unseen import check_all_seen
 from .volume import Volume
 
@@ -74,9 +73,6 @@ SHARED_HEIGHT: Final = 0.4
 #: that follows from those between these percentages of them [m].
 LEVEL: Final = 0.0025
 QUARTILES: Final = (25.0, 75.0)
-#: Heights that differ by less are the same [m].
-SAME_HEIGHT: Final = 0.006
-NEARLY: Final = 0.003
 #: Normals of upright facets with a greater cosine between them are of one plane.
 ONE_PLANE: Final = 0.92
 #: Middles of two faces of one block are nearer than this, seen from above [m].
@@ -169,39 +165,8 @@ def _labels(region: Region, look: Look, volume: Volume, smear: int) -> NDArray[n
     numbers[block] = np.arange(1, np.count_nonzero(block) + 1)
     labels[box] = numbers[groups][facets.ids]
     box = _grow_down(labels, box, region, look, volume.floor)
-    _take_strips(labels[box], pieces, region.part(box), 2 * reach + 1)
+    take_strips(labels[box], pieces.ids, region.part(box), 2 * reach + 1)
     return labels
-
-
-def _take_strips(labels: NDArray[np.uint16], pieces: Facets, region: Region, width: int) -> None:
-    """Gives strips beside and above faces the labels of the blocks that they belong to.
-
-    Of the blocks that they touch it is the one as high as they are: of one further down in a tower
-    a side is seen beside the front of the next. What looks the same goes first, and what is as high
-    as none goes to any.
-
-    Args:
-        pieces: with strips, of the region's upper part.
-        width: of the strips at most [px].
-    """
-    height = region.points[..., 2]
-    numbers, values = labels.astype(np.int32).ravel(), height.reshape(-1, 1)
-    low, high = ends_by_number(numbers, values, int(labels.max()) + 1)
-    none = np.full(len(low), np.inf)
-    lowest, highest = levels(labels, region.points, -none, none)
-    with np.errstate(invalid="ignore"):
-        wrong = (height < lowest[labels] - NEARLY) | (height > highest[labels] + NEARLY)
-    lower = len(labels) - len(pieces.ids)
-    pieces = replace(pieces, ids=np.pad(pieces.ids, ((0, lower), (0, 0))))
-    strips = pieces.ids > 0
-    labels[wrong & strips] = 0
-    within = np.maximum(lowest - NEARLY, low[:, 0] - SAME_HEIGHT), np.minimum(highest + NEARLY, high[:, 0] + SAME_HEIGHT)
-    as_high = Heights(height, *within)
-    not_beyond = Heights(height, lowest - NEARLY, highest + NEARLY)
-    near = on_one_body(region.points, region.depth)
-    alike = [link & same for link, same in zip(near, pieces.links())]
-    for links, heights in ((alike, as_high), (near, as_high), (near, not_beyond), (None, not_beyond)):
-        spread(labels, strips, width, links, heights)
 
 
 def _grow_down(
