@@ -52,6 +52,5 @@ def take_strips(labels: NDArray[Any], pieces: Ids, region: Region, width: int) -
     in_reach = Heights(height, lowest, highest)
     near = on_one_body(region.points, region.depth)
     alike = [link & same for link, same in zip(near, links_of(pieces))]
-    # A side seen at a glancing angle is far behind the front that it is of.
-    for links, heights in ((alike, as_high), (near, as_high), (near, in_reach), (None, in_reach)):
+    for links, heights in ((alike, as_high), (near, as_high), (near, in_reach)):
         spread(labels, strips, width, links, heights)
