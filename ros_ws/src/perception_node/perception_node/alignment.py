@@ -54,8 +54,9 @@ STEP: Final = 0.05
 MIXED: Final = (0.05, 4.0)
 MOVED: Final = (0.15, 10.0)
 MOST_DOUBT: Final = 0.6
-#: Where colours are mixed, depth is beside them of which a greater part is that of the other side;
-#: else it tells better than they do of what a pixel is: a side that mirrors the table looks like it.
+#: Where colours are mixed, depth is beside them if more than this part of it is that of the other
+#: side. Else it says better than they do what a pixel is of: a side that mirrors the table looks
+#: like it.
 BESIDE: Final = 0.05
 #: The depth of what has none.
 NOTHING: Final = np.float32(-1.0)

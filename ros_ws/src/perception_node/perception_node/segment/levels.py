@@ -71,7 +71,7 @@ def parted(below: Array, above: Array) -> float | None:
     beyond = len(below) - np.searchsorted(below, values, side="right")
     short = np.searchsorted(above, values, side="left")
     wrong = beyond + short
-    best = np.flatnonzero(wrong == wrong.min())
-    at = float(values[best].mean())
+    best = np.sort(values[wrong == wrong.min()])
+    at = float(best[len(best) // 2])
     far = np.count_nonzero(below > at) > MOST_WRONG * len(below)
     return None if far or np.count_nonzero(above < at) > MOST_WRONG * len(above) else at
