@@ -54,6 +54,10 @@ STEP: Final = 0.05
 MIXED: Final = (0.05, 4.0)
 MOVED: Final = (0.15, 10.0)
 MOST_DOUBT: Final = 0.6
+#: Where colours are mixed, depth is beside them if more than this part of it is that of the other
+#: side. Else it says better than they do what a pixel is of: a side that mirrors the table looks
+#: like it.
+BESIDE: Final = 0.05
 #: The depth of what has none.
 NOTHING: Final = np.float32(-1.0)
 #: A pixel whose neighbourhood spans less than this in every channel, or less than so many standard
@@ -87,9 +91,9 @@ def aligned(observation: Observation, box: tuple[slice, slice]) -> Observation:
     reach = smear + FILL_REACH
     filled, moved, inner = _moved_to_colour(measured, part, smear)
     depth, sure = observation.depth.astype(np.float32), np.ones(observation.depth.shape, bool)
-    if moved <= MOVED[0] and mixed <= MIXED[0]:
+    if moved <= (MOVED[0] if mixed <= MIXED[0] else BESIDE):
         depth[box] = fill(measured, part, reach)
-        sure[box] = ~np.isnan(measured)
+        sure[box] = ~np.isnan(measured) if mixed <= MIXED[0] else inner
     else:
         depth[box] = fill(filled, part, reach)
         sure[box] = inner

@@ -17,7 +17,17 @@ import numpy as np
 from numpy.typing import NDArray
 from tamp_runtime.machine_code import address, written
 
-from .pieces import Array, Ids, Mask, borders, connected, ends_by_number, sides, spread
+from .pieces import (
+    Array,
+    Ids,
+    Mask,
+    borders,
+    connected,
+    ends_by_number,
+    links_of,
+    sides,
+    spread,
+)
 
 #: Neighbours whose hue and saturation differ by more than this are of two facets: the distance of
 #: their shares of red, green and blue in the sum of the three.
@@ -104,8 +114,7 @@ class Facets:
 
     def links(self) -> list[Mask]:
         """Which neighbours are of one facet, by axis: (h - 1, w), (h, w - 1)."""
-        pairs = [(self.ids[low], self.ids[high]) for low, high in map(sides, (0, 1))]
-        return [(first == second) & (first > 0) for first, second in pairs]
+        return links_of(self.ids)
 
 
 def find_facets(candidates: Mask, look: Look, depth: Array) -> Facets:

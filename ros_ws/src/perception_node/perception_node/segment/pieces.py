@@ -193,22 +193,23 @@ def spread_by_numpy(
 
 
 def ends_by_number(
-    numbers: Ids, values: Array, count: int
+    numbers: Ids, values: Array, count: int, percent: tuple[float, float] = STRAY
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Between what nearly all values of each number are, see :data:`STRAY`.
 
     Args:
         numbers: below ``count``, 0 for what is left out, shape (n,).
         values: NaN is left out, shape (n, k).
+        percent: of the values that are less than either end [%].
 
     Returns:
         Low and high, NaN where there are none, shape (count, k) each.
     """
     library = written(_FILE)
     if library is None:
-        return ends_by_numpy(numbers, values, count)
+        return ends_by_numpy(numbers, values, count, percent)
     own = [np.ascontiguousarray(numbers, np.int32), np.ascontiguousarray(values, np.float32)]
-    found, shares = np.full((2, count, values.shape[1]), np.nan), np.array(STRAY) / 100.0
+    found, shares = np.full((2, count, values.shape[1]), np.nan), np.array(percent) / 100.0
     failed = library.quantiles(
         len(numbers), address(own[0]), values.shape[1], address(own[1]), count, len(shares),
         address(shares),
@@ -220,7 +221,7 @@ def ends_by_number(
 
 
 def ends_by_numpy(
-    numbers: Ids, values: Array, count: int
+    numbers: Ids, values: Array, count: int, percent: tuple[float, float] = STRAY
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """As :func:`ends_by_number`."""
     found = np.full((2, count, values.shape[1]), np.nan)
@@ -230,8 +231,14 @@ def ends_by_numpy(
         for axis, column in enumerate(own.T):
             known = column[~np.isnan(column)]
             if name and len(known):
-                found[:, name, axis] = np.percentile(known, STRAY)
+                found[:, name, axis] = np.percentile(known, percent)
     return found[0], found[1]
+
+
+def links_of(ids: Ids) -> list[Mask]:
+    """Which neighbours have the same number, other than 0, by axis: (h - 1, w), (h, w - 1)."""
+    pairs = [(ids[low], ids[high]) for low, high in map(sides, (0, 1))]
+    return [(first == second) & (first > 0) for first, second in pairs]
 
 
 def sides(axis: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:

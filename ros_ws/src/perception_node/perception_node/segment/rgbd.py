@@ -8,7 +8,7 @@ large for a block, or hangs on something that is, is none: the arm, a hand, a wa
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 import cv2
@@ -27,13 +27,13 @@ from .facets import (
     Look,
     alike,
     find_facets,
-    on_one_body,
     sums,
     without_leaks,
 )
-from .pieces import Heights, ends_by_number, spread
+from .pieces import ends_by_number
 from .region import Region, look_at
 from .segments import Segments
+from .strips import SAME_HEIGHT, take_strips
 from .unseen import check_all_seen
 from .volume import Volume
 
@@ -69,10 +69,10 @@ SAME_LIGHT: Final = 0.12
 MAX_CONTRAST: Final = 1.1
 #: Two walls of one block have this part of the lower one's height in common.
 SHARED_HEIGHT: Final = 0.4
-#: The points of a level facet are spread less than this about their height [m].
+#: The points of a level facet are spread less than this about their height, as a standard deviation
+#: that follows from those between these percentages of them [m].
 LEVEL: Final = 0.0025
-#: Heights that differ by less are the same [m].
-SAME_HEIGHT: Final = 0.006
+QUARTILES: Final = (25.0, 75.0)
 #: Normals of upright facets with a greater cosine between them are of one plane.
 ONE_PLANE: Final = 0.92
 #: Middles of two faces of one block are nearer than this, seen from above [m].
@@ -165,31 +165,8 @@ def _labels(region: Region, look: Look, volume: Volume, smear: int) -> NDArray[n
     numbers[block] = np.arange(1, np.count_nonzero(block) + 1)
     labels[box] = numbers[groups][facets.ids]
     box = _grow_down(labels, box, region, look, volume.floor)
-    _take_strips(labels[box], pieces, region.part(box), 2 * reach + 1)
+    take_strips(labels[box], pieces.ids, region.part(box), 2 * reach + 1)
     return labels
-
-
-def _take_strips(labels: NDArray[np.uint16], pieces: Facets, region: Region, width: int) -> None:
-    """Gives strips beside and above faces the labels of the blocks that they belong to.
-
-    Of the blocks that they touch it is the one as high as they are: of one further down in a tower
-    a side is seen beside the front of the next. What looks the same goes first, and what is as high
-    as none goes to any.
-
-    Args:
-        pieces: with strips, of the region's upper part.
-        width: of the strips at most [px].
-    """
-    height = region.points[..., 2]
-    numbers, values = labels.astype(np.int32).ravel(), height.reshape(-1, 1)
-    low, high = ends_by_number(numbers, values, int(labels.max()) + 1)
-    as_high = Heights(height, low[:, 0] - SAME_HEIGHT, high[:, 0] + SAME_HEIGHT)
-    lower = len(labels) - len(pieces.ids)
-    pieces = replace(pieces, ids=np.pad(pieces.ids, ((0, lower), (0, 0))))
-    near = on_one_body(region.points, region.depth)
-    alike = [link & same for link, same in zip(near, pieces.links())]
-    for links, heights in ((alike, as_high), (near, as_high), (near, None)):
-        spread(labels, pieces.ids > 0, width, links, heights)
 
 
 def _grow_down(
@@ -242,7 +219,11 @@ def _measure(facets: Facets, look: Look, region: Region, smear: int, strip: int)
     normal = np.linalg.eigh(spread)[1][:, :, 0]
     # Of points that fill a face evenly these are its ends; a stray one does not move them far.
     reach = np.sqrt(3.0 * np.einsum("fii->fi", spread))
-    level = (np.sqrt(spread[:, 2, 2]) < LEVEL) & (np.abs(normal[:, 2]) > 0.6)
+    # By the middle half of the points: a lid may run down a side that looks like it.
+    ids, heights = facets.ids.ravel(), region.points[..., 2].reshape(-1, 1)
+    low, high = ends_by_number(ids, heights, facets.count + 1, QUARTILES)
+    with np.errstate(invalid="ignore"):
+        level = ((high - low)[:, 0] < 1.35 * LEVEL) & (np.abs(normal[:, 2]) > 0.6)
     wide = np.sqrt(spread[:, 0, 0] + spread[:, 1, 1]) > LEVEL
     return _Table(
         found.pixels,
@@ -279,8 +260,10 @@ def _group(facets: Facets, table: _Table) -> NDArray[np.intp]:
     # that of a small neighbour.
     difference = np.linalg.norm(table.chroma[first] - table.chroma[second], axis=1)
     alike_first = np.argsort(difference)
-    fitting = (difference < SLIVER_HUE) & _as_high(table, large, first, second)
-    alike_first = alike_first[fitting[alike_first]]
+    alike_first = alike_first[difference[alike_first] < SLIVER_HUE]
+    # What is taken in counts as high as what it belongs to, so that a row of small ones along the
+    # edge of a tower does not lead from one block to the next.
+    low, high = table.low[:, 2].copy(), table.high[:, 2].copy()
     taken = True
     while taken:
         taken = False
@@ -288,18 +271,12 @@ def _group(facets: Facets, table: _Table) -> NDArray[np.intp]:
             a, b = first[border], second[border]
             if large[a] == large[b]:
                 continue
-            small, neighbour = (b, a) if large[a] else (a, b)
-            groups[small] = groups[neighbour]
+            small, other = (b, a) if large[a] else (a, b)
+            if low[small] <= low[other] - LEAK or high[small] >= high[other] + LEAK:
+                continue
+            groups[small], low[small], high[small] = groups[other], low[other], high[other]
             large[small] = taken = True
     return groups
-
-
-def _as_high(table: _Table, large: Mask, a: NDArray[np.int64], b: NDArray[np.int64]) -> Mask:
-    """Whether of n pairs the small facet is nowhere higher or lower than the large one."""
-    small, other = np.where(large[a], b, a), np.where(large[a], a, b)
-    above = table.low[small, 2] > table.low[other, 2] - LEAK
-    below = table.high[small, 2] < table.high[other, 2] + LEAK
-    return np.asarray((above & below) | (large[a] == large[b]))
 
 
 def _can_be_one_block(table: _Table, a: NDArray[np.int64], b: NDArray[np.int64]) -> Mask:
