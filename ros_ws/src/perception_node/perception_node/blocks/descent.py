@@ -142,6 +142,16 @@ class Problem:
         seen = Seen(seen.origin, points, rays, noise, seen.floor)
         return Problem(self.model, self.camera, seen, *others)
 
+    def only(self, blocks: Sequence[int]) -> Problem:
+        """The same of some of the blocks, by their indices."""
+        some, seen = list(blocks), self.seen
+        own = (self.used, self.outline, self.inverse, self.rows, self.values)
+        points, rays, noise, *others = (
+            array[some] for array in (seen.points, seen.rays, seen.noise, *own)
+        )
+        seen = Seen(seen.origin, points, rays, noise, seen.floor)
+        return Problem(self.model, self.camera, seen, *others)
+
     def at(self, parameters: Array) -> _Linearised:
         """What the models' residuals are there."""
         surface = self.model.surface(parameters, self.seen)
