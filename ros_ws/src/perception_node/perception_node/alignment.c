@@ -3,6 +3,7 @@
  * What alignment.py says, pixel by pixel; to the last bit what its numpy does.
  */
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 static int within(int at, int end) { return at < 0 ? 0 : at < end ? at : end - 1; }
@@ -80,4 +81,19 @@ int bends(int height, int width, const float *depth, float limit, unsigned char 
         }
     free(inverse);
     return 0;
+}
+
+/* Gives back what was measured where depth did not move; see `_settle`.
+ *
+ * found: how many pixels are near edges, and how many of them were measured on the other side. */
+void settle(int count, float step, float edge, float nothing, float *filled, const float *measured,
+            const float *inner, int64_t *found) {
+    for (int n = 0; n < count; ++n) {
+        const float far = filled[n], own = measured[n], apart = fabsf(own - far);
+        const int both = isnan(inner[n]) && !isnan(own) && !isnan(far);
+        found[0] += both;
+        found[1] += both && apart > step;
+        if (isnan(far) || (both && apart <= edge)) filled[n] = own;
+        if (filled[n] == nothing) filled[n] = NAN;
+    }
 }

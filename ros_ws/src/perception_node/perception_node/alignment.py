@@ -141,6 +141,36 @@ def _moved_to_colour(
     filled = np.where(cv2.dilate(empty, gap) > 0, NOTHING, inner)
     for _ in range(FILLS):
         filled = fill(filled, rgb, smear + FILL_REACH)
+    moved = _settle(filled, measured, inner)
+    return filled, moved, ~np.isnan(inner)
+
+
+def _settle(filled: Array, measured: Array, inner: Array) -> float:
+    """Gives back what was measured where depth did not move.
+
+    Args:
+        filled: what colours say, :data:`NOTHING` where nothing is, changed.
+        measured: NaN where depth is unknown, shape (h, w) [m].
+        inner: the same without that near edges.
+
+    Returns:
+        The part of pixels near edges that were measured on the other side.
+    """
+    library = written(_FILE)
+    if library is None:
+        return settle_by_numpy(filled, measured, inner)
+    own = [np.ascontiguousarray(image) for image in (measured, inner)]
+    found = np.zeros(2, np.int64)
+    library.settle(
+        filled.size, *map(ctypes.c_float, (STEP, EDGE, float(NOTHING))), address(filled),
+        *map(address, own), address(found),
+    )  # fmt: skip
+    near, other = found.tolist()
+    return other / near if near else 0.0
+
+
+def settle_by_numpy(filled: Array, measured: Array, inner: Array) -> float:
+    """As :func:`_settle`."""
     known = ~np.isnan(measured)
     both = np.isnan(inner) & known & ~np.isnan(filled)
     differ = np.abs(measured[both] - filled[both]) > STEP
@@ -148,7 +178,7 @@ def _moved_to_colour(
     rest = np.isnan(filled) | (both & (np.abs(measured - filled) <= EDGE))
     filled[rest] = measured[rest]
     filled[filled == NOTHING] = np.nan
-    return filled, float(differ.mean()) if len(differ) else 0.0, ~np.isnan(inner)
+    return float(differ.mean()) if len(differ) else 0.0
 
 
 def smear_of(width: int) -> int:

@@ -17,7 +17,17 @@ import numpy as np
 from numpy.typing import NDArray
 from tamp_runtime.machine_code import address, written
 
-from .pieces import Array, Ids, Mask, borders, connected, ends_by_number, sides, spread
+from .pieces import (
+    Array,
+    Ids,
+    Mask,
+    borders,
+    connected,
+    ends_by_number,
+    planes,
+    sides,
+    spread,
+)
 
 #: Neighbours whose hue and saturation differ by more than this are of two facets: the distance of
 #: their shares of red, green and blue in the sum of the three.
@@ -66,12 +76,12 @@ class Look:
         library = written(_FILE)
         if library is None:
             return cls(*look_by_numpy(rgb, dark))
-        rgb = np.ascontiguousarray(rgb)
-        chroma, light = np.empty(rgb.shape, np.float32), np.empty(rgb.shape[:2], np.float32)
+        rgb, light = np.ascontiguousarray(rgb), np.empty(rgb.shape[:2], np.float32)
+        shares = np.empty((3, *light.shape), np.float32)
         library.look(
-            light.size, address(rgb), ctypes.c_float(float(dark)), address(chroma), address(light)
+            *light.shape, address(rgb), ctypes.c_float(float(dark)), address(shares), address(light)
         )
-        return cls(chroma, light)
+        return cls(shares.transpose(1, 2, 0), light)
 
     def part(self, box: tuple[slice, slice]) -> Look:
         """That of some rows and columns."""
@@ -180,7 +190,7 @@ def on_one_body(points: Array, depth: Array) -> list[Mask]:
     library = written(_FILE)
     if library is None:
         return bodies_by_numpy(points, depth)
-    return _linked(library.bodies, [points, depth], [DEPTH_STEP, LID_STEP, LID_DEPTH])
+    return _linked(library.bodies, [points[..., 2], depth], [DEPTH_STEP, LID_STEP, LID_DEPTH])
 
 
 def bodies_by_numpy(points: Array, depth: Array) -> list[Mask]:
@@ -200,8 +210,8 @@ def _links(look: Look, depth: Array) -> Sequence[Mask]:
     library = written(_FILE)
     if library is None:
         return links_by_numpy(look, depth)
-    images, steps = [look.chroma, look.light, depth], [CHROMA_STEP**2, LIGHT_STEP, DEPTH_STEP]
-    return _linked(library.links, images, steps)
+    images = [planes(look.chroma), look.light, depth]
+    return _linked(library.links, images, [CHROMA_STEP**2, LIGHT_STEP, DEPTH_STEP])
 
 
 def links_by_numpy(look: Look, depth: Array) -> Sequence[Mask]:
@@ -219,7 +229,7 @@ def _linked(
 ) -> list[Mask]:
     """Which neighbours C finds linked in images, the last of which is (h, w), by axis."""
     height, width = images[-1].shape
-    links = [np.zeros((height - 1, width), bool), np.zeros((height, width - 1), bool)]
+    links = [np.empty((height - 1, width), bool), np.empty((height, width - 1), bool)]
     own = [np.ascontiguousarray(array, np.float32) for array in (*images, steps)]
     neighbours(height, width, *map(address, (*own, *links)))
     return links
@@ -254,7 +264,7 @@ def sums(facets: Facets, look: Look, points: Array, sure: Mask, few: int) -> Sum
     library, count = written(_FILE), facets.count + 1
     if library is None:
         return sums_by_numpy(facets, look, points, sure, few)
-    images = (facets.ids, sure, points, look.chroma, look.light)
+    images = (facets.ids, sure, planes(points), planes(look.chroma), look.light)
     own = [np.ascontiguousarray(image) for image in images]
     found = Sums(
         np.zeros(count, np.int64),
@@ -287,6 +297,29 @@ def sums_by_numpy(facets: Facets, look: Look, points: Array, sure: Mask, few: in
     products = away[:, [0, 0, 0, 1, 1, 2]] * away[:, [0, 1, 2, 1, 2, 2]]
     spreads = mean(products, of, relied)
     return Sums(pixels, many_sure, mean(colors, ids, pixels), centres, spreads)
+
+
+def counts(ids: Ids, some: Mask, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """How many pixels each facet has, and how many of some of them, shape (count,) each."""
+    library = written(_FILE)
+    if library is None:
+        return np.bincount(ids.ravel(), minlength=count), np.bincount(ids[some], minlength=count)
+    found = np.zeros((2, count), np.int64)
+    own = map(address, map(np.ascontiguousarray, (ids, some)))
+    library.counts(ids.size, *own, count, address(found))
+    return found[0], found[1]
+
+
+def mean_look(look: Look, ids: Ids, facet: int) -> tuple[NDArray[np.float32], np.float32]:
+    """Chroma, shape (3,), and light of a facet."""
+    mask = ids == facet
+    light = look.light[mask]
+    library = written(_FILE)
+    if library is None:
+        return np.ascontiguousarray(look.chroma[mask]).mean(axis=0), light.mean()
+    total = np.zeros(3, np.float32)
+    library.chromas(ids.size, address(mask), address(planes(look.chroma)), address(total))
+    return np.asarray(total / np.float32(len(light))), light.mean()
 
 
 def alike(look: Look, pixels: tuple[NDArray[np.intp], ...], step: tuple[int, int]) -> Mask:

@@ -201,7 +201,7 @@ static double quantile(float *values, int count, double share) {
 
 /* Quantiles of values by number; see `ends_by_number`.
  *
- * numbers: (n), 0 for what is left out; values: (n, axes); found: (shares, count, axes), changed
+ * numbers: (n), 0 for what is left out; values: (axes, n); found: (shares, count, axes), changed
  * where there are values of a number. NaN counts as none. */
 int quantiles(int pixels, const int32_t *numbers, int axes, const float *values, int count,
               int shares, const double *share, double *found) {
@@ -213,17 +213,18 @@ int quantiles(int pixels, const int32_t *numbers, int axes, const float *values,
         return -1;
     }
     for (int axis = 0; axis < axes; ++axis) {
+        const float *mine = values + (size_t)axis * pixels;
         memset(begins, 0, sizeof(int) * ((size_t)count + 1));
         for (int n = 0; n < pixels; ++n)
-            if (numbers[n] && !isnan(values[axes * n + axis])) ++begins[numbers[n]];
+            if (numbers[n] && !isnan(mine[n])) ++begins[numbers[n]];
         for (int number = 1, sum = 0; number <= count; ++number) {
             const int own = number < count ? begins[number] : 0;
             begins[number] = sum;
             sum += own;
         }
         for (int n = 0; n < pixels; ++n)
-            if (numbers[n] && !isnan(values[axes * n + axis]))
-                sorted[begins[numbers[n]]++] = values[axes * n + axis];
+            if (numbers[n] && !isnan(mine[n]))
+                sorted[begins[numbers[n]]++] = mine[n];
         for (int number = 1, begin = 0; number < count; ++number) {
             const int end = begins[number];
             for (int k = 0; end > begin && k < shares; ++k)

@@ -207,7 +207,7 @@ def ends_by_number(
     library = written(_FILE)
     if library is None:
         return ends_by_numpy(numbers, values, count)
-    own = [np.ascontiguousarray(numbers, np.int32), np.ascontiguousarray(values, np.float32)]
+    own = [np.ascontiguousarray(numbers, np.int32), np.ascontiguousarray(values.T, np.float32)]
     found, shares = np.full((2, count, values.shape[1]), np.nan), np.array(STRAY) / 100.0
     failed = library.quantiles(
         len(numbers), address(own[0]), values.shape[1], address(own[1]), count, len(shares),
@@ -232,6 +232,11 @@ def ends_by_numpy(
             if name and len(known):
                 found[:, name, axis] = np.percentile(known, STRAY)
     return found[0], found[1]
+
+
+def planes(image: Array) -> Array:
+    """The channels of an image one after another, (h, w, channels) -> (channels, h, w)."""
+    return np.ascontiguousarray(np.moveaxis(image, -1, 0), np.float32)
 
 
 def sides(axis: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:

@@ -31,7 +31,7 @@ from .facets import (
     sums,
     without_leaks,
 )
-from .pieces import Heights, ends_by_number, spread
+from .pieces import Heights, ends_by_number, planes, spread
 from .region import Region, look_at
 from .segments import Segments
 from .unseen import check_all_seen
@@ -344,7 +344,7 @@ def _which_are_blocks(
     pixels = np.bincount(groups[1:], table.pixels[1:], minlength=count)
     some = pixels >= MIN_PIXELS
     group_of = np.where(some, np.arange(count), 0).astype(np.int32)[groups][facets.ids]
-    ends = ends_by_number(group_of.ravel(), points.reshape(-1, 3), count)
+    ends = ends_by_number(group_of.ravel(), planes(points).reshape(3, -1).T, count)
     low, high = (np.where(some[:, None], end, 0.0) for end in ends)
     extent = high - low
     across = np.maximum(extent[:, 0], extent[:, 1])

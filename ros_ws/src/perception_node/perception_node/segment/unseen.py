@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from perception_node.errors import BadImageError
 from perception_node.masks import pixels_of
 
-from .facets import Look, Mask, facet_ids
+from .facets import Look, Mask, counts, facet_ids, mean_look
 from .region import Region
 
 #: Of a thing that depth shows at least this part of the pixels has a depth.
@@ -64,10 +64,9 @@ def unseen(region: Region, look: Look, picture_area: int) -> Mask:
     if np.count_nonzero(unknown) <= enough:
         return ~everything
     ids, count = facet_ids(everything, look, region.depth)
-    without = np.bincount(ids[unknown], minlength=count + 1)
+    pixels, without = counts(ids, unknown, count + 1)
     if without.max() <= enough:
         return ~everything
-    pixels = np.bincount(ids.ravel(), minlength=count + 1)
     bare = (pixels >= least) & (pixels - without < MIN_DEPTH_SHARE * pixels)
     if not bare.any():
         return ~everything
@@ -78,12 +77,9 @@ def unseen(region: Region, look: Look, picture_area: int) -> Mask:
     if not len(doubtful):
         return ~everything
 
-    def means(facets: NDArray[np.intp]) -> list[tuple[NDArray[np.float32], np.float32]]:
-        masks = (ids == facet for facet in facets)
-        return [(look.chroma[mask].mean(axis=0), look.light[mask].mean()) for mask in masks]
-
-    known = means(np.flatnonzero(behind))
-    for facet, (hue, light) in zip(doubtful, means(doubtful)):
+    known = [mean_look(look, ids, facet) for facet in np.flatnonzero(behind)]
+    for facet in doubtful:
+        hue, light = mean_look(look, ids, facet)
         bare[facet] = not any(
             np.linalg.norm(hue - other) < SAME_HUE and abs(light - lit) < SAME_LIGHT
             for other, lit in known
