@@ -256,22 +256,23 @@ def _distances(light: Array, table: Array | None, gains: Array) -> tuple[Real, R
     metal = np.full(diffuse.shape[1:], np.inf, np.float32)
     wanted = np.log(_BRIGHTNESS / np.maximum(light @ _LUMINANCE, 1e-4))
     levels = np.abs(wanted[:, None] - np.log(_LEVELS)).argmin(axis=1)
-    tints = []
-    if table is not None:
-        before = _linear(table)
-        tint = before / of_light
-        tint = tint / tint.mean(axis=1, keepdims=True)
-        tints = [of_light * tint**part for part in _OF_TINT]
-        usual = _OF_TABLE * float(before.mean()) + _OF_ROOM
-        shade_cost = _METAL_SHADE_COST * (np.log(_SHADES) - np.log(usual) / _GAMMA) ** 2
-        shade_cost = (shade_cost + _METAL_COST)[:, None].astype(np.float32)
+    seen = (light * _LEVELS[levels][:, None])[:, None]
     plain, of_gains = len(_SHADES) * len(_NAMES), gains.tobytes()
-    for index, level in enumerate(levels):
-        shown, squares = _shown(of_gains, int(level))
-        seen = light[index] * _LEVELS[level]
-        _put_diffuse(diffuse, index, _lab(seen / of_light), shown, squares)
-        for colored in tints:
-            cost = _squared(_lab(seen / colored), shown[:, :plain], squares[:, :plain])
+    shown = [_shown(of_gains, int(level)) for level in levels]
+    for index, at in enumerate(_lab(seen / of_light)):
+        _put_diffuse(diffuse, index, at, *shown[index])
+    if table is None:
+        return diffuse, metal
+    before = _linear(table)
+    tint = before / of_light
+    tint = tint / tint.mean(axis=1, keepdims=True)
+    usual = _OF_TABLE * float(before.mean()) + _OF_ROOM
+    shade_cost = _METAL_SHADE_COST * (np.log(_SHADES) - np.log(usual) / _GAMMA) ** 2
+    shade_cost = (shade_cost + _METAL_COST)[:, None].astype(np.float32)
+    for part in _OF_TINT:
+        for index, at in enumerate(_lab(seen / (of_light * tint**part))):
+            names, squares = shown[index]
+            cost = _squared(at, names[:, :plain], squares[:, :plain])
             cost = cost.reshape(lights, len(_SHADES), len(_NAMES)) + shade_cost
             np.minimum(metal[:, index], cost.min(axis=1), out=metal[:, index])
     return diffuse, metal

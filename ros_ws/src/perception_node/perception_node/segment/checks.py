@@ -51,7 +51,7 @@ def check_segments(
     """
     same_pixels = f"shows the same pixels as {segments.source}"
     for segment in segments:
-        left, top, width, height = cv2.boundingRect(segment.part.astype(np.uint8))
+        left, top, width, height = segment.box
         box = np.s_[top : top + height, left : left + width]
         around = np.s_[
             max(0, top - EDGE_WIDTH) : top + height + EDGE_WIDTH,

@@ -5,30 +5,22 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 
-/* The look of colours; see `Look`. rgb: (h, w, 3); chroma: (3, h, w), light: (h, w). */
-void look(int height, int width, const uint8_t *rgb, float dark, float *chroma, float *light) {
-    const size_t size = (size_t)height * width;
+/* The look of colours; see `Look`. reds, greens, blues: (n); chroma: (3, n), light: (n). */
+void look(int count, const uint8_t *reds, const uint8_t *greens, const uint8_t *blues, float dark,
+          float *restrict chroma, float *restrict light) {
     float logarithm[3 * 255 + 1];
     for (int sum = 0; sum <= 3 * 255; ++sum) logarithm[sum] = logf((float)sum + 3.0f * dark);
-    for (int row = 0; row < height; ++row) {
-        const uint8_t *code = rgb + 3 * (size_t)row * width;
-        float *restrict red = chroma + (size_t)row * width;
-        float *restrict green = red + size, *restrict blue = green + size;
-        float *bright = light + (size_t)row * width;
-        for (int n = 0; n < width; ++n) {
-            red[n] = code[3 * n];
-            green[n] = code[3 * n + 1];
-            blue[n] = code[3 * n + 2];
-            bright[n] = logarithm[code[3 * n] + code[3 * n + 1] + code[3 * n + 2]];
-        }
-        for (int n = 0; n < width; ++n) {
-            const float r = red[n] + dark, g = green[n] + dark, b = blue[n] + dark;
-            const float total = r + g + b;
-            red[n] = r / total;
-            green[n] = g / total;
-            blue[n] = b / total;
-        }
+    float *red = chroma, *green = chroma + count, *blue = chroma + 2 * (size_t)count;
+    for (int n = 0; n < count; ++n) light[n] = logarithm[reds[n] + greens[n] + blues[n]];
+#pragma omp simd
+    for (int n = 0; n < count; ++n) {
+        const float r = (float)reds[n] + dark, g = (float)greens[n] + dark;
+        const float b = (float)blues[n] + dark, total = r + g + b;
+        red[n] = r / total;
+        green[n] = g / total;
+        blue[n] = b / total;
     }
 }
 
@@ -83,39 +75,93 @@ void bodies(int height, int width, const float *heights, const float *depth, con
     }
 }
 
+/* Which neighbours are of one facet, whatever it is; see `Facets.links`. */
+void of_one(int height, int width, const int32_t *ids, uint8_t *restrict down,
+            uint8_t *restrict right) {
+    for (int row = 0; row < height; ++row) {
+        const int32_t *own = ids + (size_t)row * width, *below = own + width;
+        uint8_t *under = down + (size_t)row * width, *beside = right + (size_t)row * (width - 1);
+        if (row < height - 1)
+            for (int n = 0; n < width; ++n) under[n] = (own[n] == below[n]) & (own[n] > 0);
+        for (int n = 0; n < width - 1; ++n) beside[n] = (own[n] == own[n + 1]) & (own[n] > 0);
+    }
+}
+
+/* Which pixels are in the middle of a square of one facet; see `uniform`.
+ *
+ * before, after: how far the square reaches to both sides. Returns -1 without memory. */
+int uniform(int height, int width, const int32_t *ids, int before, int after, uint8_t *inner) {
+    /* In how many rows up to this one a column's pixels are each amid equal ones of their row, and
+     * of one facet. */
+    int *rows = calloc((size_t)height * width, sizeof(int));
+    if (!rows) return -1;
+    for (int row = 0; row < height; ++row) {
+        const int32_t *own = ids + (size_t)row * width;
+        int *many = rows + (size_t)row * width;
+        for (int begin = 0, end; begin < width; begin = end) {
+            for (end = begin + 1; end < width && own[end] == own[begin];) ++end;
+            const int first = begin ? begin + before : 0, last = end < width ? end - after : width;
+            for (int n = first; n < last; ++n)
+                many[n] = 1 + (row && own[n - width] == own[n] ? many[n - width] : 0);
+        }
+    }
+    for (int row = 0; row < height; ++row) {
+        const int bottom = row + after < height ? row + after : height - 1;
+        const int least = bottom - (row > before ? row - before : 0) + 1;
+        const int *many = rows + (size_t)bottom * width;
+        uint8_t *out = inner + (size_t)row * width;
+        for (int n = 0; n < width; ++n) out[n] = many[n] >= least;
+    }
+    free(rows);
+    return 0;
+}
+
 /* Sums over the pixels of each facet; see `Sums`.
  *
- * ids: (n), 0 for those of no facet; points, chroma: (3, n); few: a facet with fewer sure pixels has all of them counted.
+ * ids: (h, w), 0 for those of no facet; points, chroma: (3, h, w); strides: how far their channels
+ * and rows are from one another, then the rows of light and sure; few: a facet with fewer sure
+ * pixels has all of them counted.
  * pixels, sure_ones: (F); colors: of chroma and light, (F, 4); centres: means of the points that
  * count, (F, 3); spreads: of their products, xx xy xz yy yz zz, (F, 6). All zero at first. */
-void sums(int count, int facets, const int32_t *ids, const uint8_t *sure, const float *points,
-          const float *chroma, const float *light, int few, int64_t *pixels, int64_t *sure_ones,
-          double *colors, double *centres, double *spreads) {
-    for (int n = 0; n < count; ++n) {
-        const int32_t id = ids[n];
-        if (!id) continue;
-        ++pixels[id];
-        sure_ones[id] += sure[n] != 0;
-        for (int i = 0; i < 3; ++i) colors[4 * id + i] += chroma[(size_t)i * count + n];
-        colors[4 * id + 3] += light[n];
+void sums(int height, int width, int facets, const int32_t *ids, const float *points,
+          const float *chroma, const float *light, const uint8_t *sure, const int64_t *strides,
+          int few, int64_t *pixels, int64_t *sure_ones, double *colors, double *centres,
+          double *spreads) {
+    for (int row = 0; row < height; ++row) {
+        const int32_t *own = ids + (size_t)row * width;
+        const float *hue = chroma + row * strides[3], *bright = light + row * strides[4];
+        const uint8_t *known = sure + row * strides[5];
+        for (int n = 0; n < width; ++n) {
+            const int32_t id = own[n];
+            if (!id) continue;
+            ++pixels[id];
+            sure_ones[id] += known[n] != 0;
+            for (int i = 0; i < 3; ++i) colors[4 * id + i] += hue[i * strides[2] + n];
+            colors[4 * id + 3] += bright[n];
+        }
     }
     for (int pass = 0; pass < 2; ++pass) {
-        for (int n = 0; n < count; ++n) {
-            const int32_t id = ids[n];
-            if (!id || (!sure[n] && sure_ones[id] >= few)) continue;
-            const float point[3] = {points[n], points[count + n], points[2 * (size_t)count + n]};
-            double *centre = centres + 3 * id, *spread = spreads + 6 * id;
-            if (!pass) {
-                for (int i = 0; i < 3; ++i) centre[i] += point[i];
-                continue;
+        for (int row = 0; row < height; ++row) {
+            const int32_t *own = ids + (size_t)row * width;
+            const float *at = points + row * strides[1];
+            const uint8_t *known = sure + row * strides[5];
+            for (int n = 0; n < width; ++n) {
+                const int32_t id = own[n];
+                if (!id || (!known[n] && sure_ones[id] >= few)) continue;
+                double *centre = centres + 3 * id, *spread = spreads + 6 * id;
+                if (!pass) {
+                    for (int i = 0; i < 3; ++i) centre[i] += at[i * strides[0] + n];
+                    continue;
+                }
+                const double x = at[n] - centre[0], y = at[strides[0] + n] - centre[1];
+                const double z = at[2 * strides[0] + n] - centre[2];
+                spread[0] += x * x;
+                spread[1] += x * y;
+                spread[2] += x * z;
+                spread[3] += y * y;
+                spread[4] += y * z;
+                spread[5] += z * z;
             }
-            const double x = point[0] - centre[0], y = point[1] - centre[1], z = point[2] - centre[2];
-            spread[0] += x * x;
-            spread[1] += x * y;
-            spread[2] += x * z;
-            spread[3] += y * y;
-            spread[4] += y * z;
-            spread[5] += z * z;
         }
         for (int id = 0; id < facets; ++id) {
             const int64_t relied = sure_ones[id] < few ? pixels[id] : sure_ones[id];
