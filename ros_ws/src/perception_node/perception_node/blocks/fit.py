@@ -62,7 +62,9 @@ def fit(
         evidence: from one picture; at least one.
     """
     problem = Problem.of(model, priors, evidence)
-    near = descended(problem.blurred(*COARSE), np.stack(starts), MAX_TRIALS[0], ENOUGH[0])
+    near = descended(
+        problem.blurred(*COARSE), np.stack(starts), MAX_TRIALS[0], ENOUGH[0], offs=False
+    )
     found = descended(problem, near.parameters, MAX_TRIALS[1], ENOUGH[1])
     fits = []
     for index, item in enumerate(evidence):
@@ -112,7 +114,7 @@ def _covariances(problem: Problem, found: Lowest) -> Array:
     # All at once, both ways of each direction as blocks of their own.
     changes = PROBE * np.concatenate([hidden, -hidden])
     changed = (parameters + changes).reshape(-1, parameters.shape[1])
-    probed = descended(problem.repeated(len(changes)), changed, 0, 0.0)
+    probed = descended(problem.repeated(len(changes)), changed, 0, 0.0, offs=False)
     rises = probed.cost.reshape(2, len(hidden), -1).min(axis=0) - found.cost
     # A parabola that rises by this much over the step has this variance.
     variances = PROBE**2 / (2.0 * np.maximum(rises, 1e-3))
