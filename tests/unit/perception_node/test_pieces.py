@@ -13,7 +13,7 @@ from perception_scenes import PLACES, looking_camera
 
 from perception_node import alignment, light
 from perception_node.blocks import evidence
-from perception_node.quantiles import percentile_of_codes, quantiles
+from perception_node.quantiles import quantile_of_codes, quantiles
 from perception_node.segment import Volume, facets, leaks, pieces, region
 from perception_node.segment.facets import Facets, Look
 from perception_node.segment.pieces import Heights
@@ -173,9 +173,9 @@ def test_content_with_what_is_around_it(count: int, side: int, seed: int) -> Non
 
 
 @given(pictures, st.integers(0, 100))
-def test_percentiles_of_codes_are_those_of_numpy(picture: Picture, share: int) -> None:
+def test_quantiles_of_codes_are_those_of_numpy(picture: Picture, share: int) -> None:
     codes = picture.rgb[..., 0]
-    assert percentile_of_codes(codes, share / 100) == np.percentile(codes, share)
+    assert quantile_of_codes(codes, share / 100) == np.percentile(codes, share)
 
 
 @given(pictures, st.integers(0, 8))

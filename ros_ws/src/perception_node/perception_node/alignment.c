@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 static int within(int at, int end) { return at < 0 ? 0 : at < end ? at : end - 1; }
 
@@ -36,49 +37,57 @@ void resembled(int height, int width, const unsigned char *rgb, const unsigned c
 
 /* Depth for pixels without one; see `fill`.
  *
- * depth, filled: (h, w); near: whether any depth is near by, (h, w); steps: as above, without the pixel itself; costs: of each, (m). */
-void fill(int height, int width, const float *depth, const unsigned char *near,
+ * depth, filled: (h, w); wanted: pixels without depth that have any near by, (h, w); steps: as
+ * above, without the pixel itself; costs: of each, (m). */
+void fill(int height, int width, const float *depth, const unsigned char *wanted,
           const unsigned char *rgb, int steps, const int *step, const float *costs,
           float likeness, float *filled) {
-    for (int row = 0; row < height; ++row)
-        for (int column = 0; column < width; ++column) {
-            const int at = row * width + column;
-            filled[at] = depth[at];
-            if (!near[at] || !isnan(depth[at])) continue;
-            const unsigned char *own = rgb + 3 * at;
-            float least = likeness;
-            for (int k = 0; k < steps && costs[k] < least; ++k) {
-                const int i = row + step[2 * k], j = column + step[2 * k + 1];
-                if (i < 0 || i >= height || j < 0 || j >= width) continue;
-                const int there = i * width + j;
-                if (isnan(depth[there])) continue;
-                const unsigned char *other = rgb + 3 * there;
-                const float difference =
-                    costs[k] + (float)(abs(other[0] - own[0]) + abs(other[1] - own[1]) +
-                                       abs(other[2] - own[2]));
-                if (difference < least) {
-                    least = difference;
-                    filled[at] = depth[there];
-                }
+    const size_t size = (size_t)height * width;
+    const unsigned char *next = wanted, *end = wanted + size;
+    memcpy(filled, depth, sizeof(float) * size);
+    while (next < end && (next = memchr(next, 1, end - next))) {
+        const int at = (int)(next++ - wanted), row = at / width, column = at % width;
+        const unsigned char *own = rgb + 3 * at;
+        float least = likeness;
+        for (int k = 0; k < steps && costs[k] < least; ++k) {
+            const int i = row + step[2 * k], j = column + step[2 * k + 1];
+            if (i < 0 || i >= height || j < 0 || j >= width) continue;
+            const int there = i * width + j;
+            if (isnan(depth[there])) continue;
+            const unsigned char *other = rgb + 3 * there;
+            const float difference =
+                costs[k] + (float)(abs(other[0] - own[0]) + abs(other[1] - own[1]) +
+                                   abs(other[2] - own[2]));
+            if (difference < least) {
+                least = difference;
+                filled[at] = depth[there];
             }
         }
+    }
 }
 
 /* Whether inverse depths bend by more than a share; see `without_edges`. edge: (h, w). */
 int bends(int height, int width, const float *depth, float limit, unsigned char *edge) {
-    float *inverse = malloc(sizeof(float) * height * width);
+    const size_t size = (size_t)height * width;
+    float *inverse = malloc(sizeof(float) * (size + width)), *bend = inverse + size;
     if (!inverse) return -1;
-    for (int n = 0; n < height * width; ++n) inverse[n] = isnan(depth[n]) ? 0.0f : 1.0f / depth[n];
-    for (int row = 0; row < height; ++row)
-        for (int column = 0; column < width; ++column) {
-            const int n = row * width + column;
-            const float *at = inverse + n;
-            float bend = 0.0f;
-            if (column > 0 && column < width - 1) bend = fabsf(at[-1] - 2.0f * at[0] + at[1]);
-            if (row > 0 && row < height - 1)
-                bend = fmaxf(bend, fabsf(at[-width] - 2.0f * at[0] + at[width]));
-            edge[n] = bend * depth[n] > limit;
-        }
+    for (size_t n = 0; n < size; ++n) {
+        const float over = 1.0f / depth[n];
+        inverse[n] = isnan(depth[n]) ? 0.0f : over;
+    }
+    for (int row = 0; row < height; ++row) {
+        const float *at = inverse + (size_t)row * width, *far = depth + (size_t)row * width;
+        const float *above = at - width, *below = at + width;
+        unsigned char *restrict out = edge + (size_t)row * width;
+        bend[0] = bend[width - 1] = 0.0f;
+        for (int n = 1; n < width - 1; ++n) bend[n] = fabsf(at[n - 1] - 2.0f * at[n] + at[n + 1]);
+        if (row > 0 && row < height - 1)
+            for (int n = 0; n < width; ++n) {
+                const float across = fabsf(above[n] - 2.0f * at[n] + below[n]);
+                bend[n] = across > bend[n] ? across : bend[n];
+            }
+        for (int n = 0; n < width; ++n) out[n] = bend[n] * far[n] > limit;
+    }
     free(inverse);
     return 0;
 }

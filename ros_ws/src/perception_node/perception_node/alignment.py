@@ -329,9 +329,10 @@ def fill(depth: Array, rgb: NDArray[np.uint8], reach: int) -> Array:
     costs = (2.0 * np.hypot(steps[:, 0], steps[:, 1])).astype(np.float32)
     depth, rgb = np.ascontiguousarray(depth, np.float32), np.ascontiguousarray(rgb)
     known, around = ~np.isnan(depth), np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
-    near, filled = cv2.dilate(known.view(np.uint8), around), np.empty_like(depth)
+    wanted, filled = cv2.dilate(known.view(np.uint8), around), np.empty_like(depth)
+    wanted ^= known.view(np.uint8)
     library.fill(
-        *depth.shape, address(depth), address(near), address(rgb), len(steps), address(steps),
+        *depth.shape, address(depth), address(wanted), address(rgb), len(steps), address(steps),
         address(costs),
         ctypes.c_float(FILL_LIKENESS), address(filled),
     )  # fmt: skip

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from tamp_runtime.machine_code import address, written
 
-from perception_node.quantiles import percentile_of_codes
+from perception_node.quantiles import quantile_of_codes
 
 from .pieces import (
     Array,
@@ -68,7 +68,7 @@ class Look:
             noise: that its channels had, before it was smoothed [0..255].
         """
         library, channels = written(_FILE), cv2.split(rgb)
-        brightest = percentile_of_codes(
+        brightest = quantile_of_codes(
             np.maximum.reduce([channel[::2, ::2] for channel in channels]), 0.95
         )
         dark = np.float32(max(DARK * brightest, DARK_NOISE * noise, 1.0))
@@ -261,7 +261,7 @@ def sums(facets: Facets, look: Look, points: Array, sure: Mask, few: int) -> Sum
     library, count = written(_FILE), facets.count + 1
     if library is None:
         return sums_by_numpy(facets, look, points, sure, few)
-    images = [np.moveaxis(points, -1, 0), np.moveaxis(look.chroma, -1, 0), look.light, sure]
+    images = [points.transpose(2, 0, 1), look.chroma.transpose(2, 0, 1), look.light, sure]
     if any(image.strides[-1] != image.itemsize for image in images):
         images = [np.ascontiguousarray(image) for image in images]
     # How far rows and channels are from one another.

@@ -236,7 +236,7 @@ def ends_by_numpy(
 
 def planes(image: Array) -> Array:
     """The channels of an image one after another, (h, w, channels) -> (channels, h, w)."""
-    return np.ascontiguousarray(np.moveaxis(image, -1, 0), np.float32)
+    return np.ascontiguousarray(image.transpose(2, 0, 1), np.float32)
 
 
 def sides(axis: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
