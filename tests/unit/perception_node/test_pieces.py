@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from perception_scenes import PLACES, looking_camera
 
-from perception_node import alignment, light
+from perception_node import alignment, depth_gaps, light
 from perception_node.blocks import evidence
 from perception_node.quantiles import quantile_of_codes, quantiles
 from perception_node.segment import Volume, facets, leaks, pieces, region
@@ -196,14 +196,14 @@ def test_the_look_of_colours(picture: Picture, noise: float) -> None:
 @given(pictures, st.integers(1, 4))
 def test_edges_that_are_aligned(picture: Picture, reach: int) -> None:
     rgb, depth = picture.rgb, picture.depth
-    same(alignment.fill(depth, rgb, reach), alignment.fill_by_numpy(depth, rgb, reach))
+    same(depth_gaps.fill(depth, rgb, reach), depth_gaps.fill_by_numpy(depth, rgb, reach))
     calls = [
         lambda: alignment.sharpened(rgb, reach, 1.0),
         lambda: alignment.without_edges(depth, reach),
         lambda: alignment._moved_to_colour(depth, rgb, reach),
     ]
     fast = [call() for call in calls]
-    same(fast, by_numpy(lambda: [call() for call in calls], alignment))
+    same(fast, by_numpy(lambda: [call() for call in calls], alignment, depth_gaps))
 
 
 @given(pictures)

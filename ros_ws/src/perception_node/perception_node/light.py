@@ -206,7 +206,9 @@ def _of_scene(diffuse: Real, metal: Real, most: float) -> Real:
     """
     # A shade that differs by so many steps costs more than no name.
     reach = int(np.sqrt(most / _OWN_SHADE_COST) / _STEP) + 2
-    apart = _OWN_SHADE_COST * (_STEP * np.arange(reach + 1)) ** 2
+    apart: Array = np.asarray(
+        _OWN_SHADE_COST * (_STEP * np.arange(reach + 1)) ** 2, dtype=np.float64
+    )
     library = written(_FILE)
     if library is None:
         return of_scene_by_numpy(diffuse, metal, apart)

@@ -54,6 +54,8 @@ def _noise(rows: NDArray[Any], step: int) -> float:
     if not found.size:
         return 0.0
     # From the median of normal errors' sizes; a bend's variance is 1 + 4 + 1 times that of a value.
-    return 1.4826 / np.sqrt(6.0) * (
-        float(np.median(found)) if found.dtype.kind == "f" else quantile_of_codes(found, 0.5)
+    return (
+        1.4826
+        / np.sqrt(6.0)
+        * (float(np.median(found)) if found.dtype.kind == "f" else quantile_of_codes(found, 0.5))
     )

@@ -89,20 +89,22 @@ def evidence_of(
     Raises:
         BadImageError: if too little depth is known; the sentence goes on from the block's name.
     """
-    left, top, width, _ = segment.box
-    if width == 0:
+    part = segment.part
+    rows, columns = np.flatnonzero(part.any(1)), np.flatnonzero(part.any(0))
+    if len(rows) == 0:
         raise BadImageError("it has no pixels")
+    top, left = rows[0], columns[0]
     # One more pixel on every side; what is beyond the picture is unlike anything.
-    wide = _padded(segment.part, segment.box, fill=False)
-    labels = _padded(segments.label_image, segment.box, fill=-1)
-    near = _padded(depth, segment.box, fill=np.nan).astype(np.float64)
+    wide = _padded(part, rows, columns, fill=False)
+    labels = _padded(segments.label_image, rows, columns, fill=-1)
+    near = _padded(depth, rows, columns, fill=np.nan).astype(np.float64)
     near[~(near > 0.0) | np.isinf(near)] = np.nan
     known = wide & np.isfinite(near)
     count, all_of_it = np.count_nonzero(known), np.count_nonzero(wide)
     if count < MIN_DEPTH_SHARE * all_of_it or count < MIN_PIXELS:
         raise BadImageError(f"only {count / all_of_it:.0%} of its pixels have depth")
     if sure is not None:
-        reliable = known & _padded(sure, segment.box, fill=False)
+        reliable = known & _padded(sure, rows, columns, fill=False)
         if np.count_nonzero(reliable) >= MIN_SURE:
             known = reliable
     at = np.flatnonzero(known)
@@ -136,10 +138,11 @@ def _edge_noise(shared: Array, doubt: float) -> Array:
     return np.hypot(OUTLINE_NOISE * np.sqrt(shared), doubt * np.sqrt(side))
 
 
-def _padded(image: NDArray[Any], box: tuple[int, int, int, int], fill: float) -> NDArray[Any]:
-    """The part of an image in a rectangle, see :attr:`Segment.box`, and one pixel around."""
-    left, top = box[0] - 1, box[1] - 1
-    right, bottom = box[0] + box[2] + 1, box[1] + box[3] + 1
+def _padded(
+    image: NDArray[Any], rows: NDArray[np.intp], columns: NDArray[np.intp], fill: float
+) -> NDArray[Any]:
+    """The part of an image from the first to the last row and column, and one pixel around."""
+    top, bottom, left, right = rows[0] - 1, rows[-1] + 2, columns[0] - 1, columns[-1] + 2
     height, width = image.shape
     # Labels have no negative numbers, but what is beyond the picture is like none of them.
     kind = np.int64 if np.issubdtype(image.dtype, np.integer) else image.dtype

@@ -75,18 +75,6 @@ void bodies(int height, int width, const float *heights, const float *depth, con
     }
 }
 
-/* Which neighbours are of one facet, whatever it is; see `Facets.links`. */
-void of_one(int height, int width, const int32_t *ids, uint8_t *restrict down,
-            uint8_t *restrict right) {
-    for (int row = 0; row < height; ++row) {
-        const int32_t *own = ids + (size_t)row * width, *below = own + width;
-        uint8_t *under = down + (size_t)row * width, *beside = right + (size_t)row * (width - 1);
-        if (row < height - 1)
-            for (int n = 0; n < width; ++n) under[n] = (own[n] == below[n]) & (own[n] > 0);
-        for (int n = 0; n < width - 1; ++n) beside[n] = (own[n] == own[n + 1]) & (own[n] > 0);
-    }
-}
-
 /* Which pixels are in the middle of a square of one facet; see `uniform`.
  *
  * before, after: how far the square reaches to both sides. Returns -1 without memory. */

@@ -25,6 +25,8 @@ from .pieces import (
     Mask,
     borders,
     connected,
+    links_of,
+    no_links,
     planes,
     sides,
 )
@@ -74,7 +76,8 @@ class Look:
         dark = np.float32(max(DARK * brightest, DARK_NOISE * noise, 1.0))
         if library is None:
             return cls(*look_by_numpy(rgb, dark))
-        shares, light = np.empty((3, *rgb.shape[:2]), np.float32), np.empty(rgb.shape[:2], np.float32)
+        light = np.empty(rgb.shape[:2], np.float32)
+        shares = np.empty((3, *light.shape), np.float32)
         library.look(
             light.size, *map(address, channels), ctypes.c_float(float(dark)), address(shares),
             address(light),
@@ -112,14 +115,7 @@ class Facets:
 
     def links(self) -> list[Mask]:
         """Which neighbours are of one facet, by axis: (h - 1, w), (h, w - 1)."""
-        library = written(_FILE)
-        if library is None:
-            pairs = [(self.ids[low], self.ids[high]) for low, high in map(sides, (0, 1))]
-            return [(first == second) & (first > 0) for first, second in pairs]
-        height, width = self.ids.shape
-        links = _unlinked(height, width)
-        library.of_one(height, width, address(np.ascontiguousarray(self.ids)), *map(address, links))
-        return links
+        return links_of(self.ids)
 
     def thick(self, width: int) -> Mask:
         """Whether facets are anywhere wider and higher than so many pixels, shape (count + 1,)."""
@@ -221,15 +217,10 @@ def _linked(
 ) -> list[Mask]:
     """Which neighbours C finds linked in images, the last of which is (h, w), by axis."""
     height, width = images[-1].shape
-    links = _unlinked(height, width)
+    links = no_links(height, width)
     own = [np.ascontiguousarray(array, np.float32) for array in (*images, steps)]
     neighbours(height, width, *map(address, (*own, *links)))
     return links
-
-
-def _unlinked(height: int, width: int) -> list[Mask]:
-    """Room for which neighbours are linked, by axis."""
-    return [np.empty((height - 1, width), bool), np.empty((height, width - 1), bool)]
 
 
 class Sums(NamedTuple):

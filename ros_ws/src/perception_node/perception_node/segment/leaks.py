@@ -65,7 +65,7 @@ def _wide(facets: Facets, reach: int) -> Mask:
         least = cv2.erode(np.where(inner, values, none).astype(np.float32), around)
         return np.asarray((ids > 0) & ((grown == values) | (least == values)))
     low, high, wide = np.empty(ids.shape, np.float32), np.empty(ids.shape, np.float32), inner
-    library.part(ids.size, address(ids), address(inner), ctypes.c_float(none), address(low),
+    library.part(ids.size, address(ids), address(inner), ctypes.c_float(float(none)), address(low),
                  address(high))  # fmt: skip
     grown, least = cv2.dilate(low, around), cv2.erode(high, around)
     library.wide(ids.size, address(ids), address(grown), address(least), address(wide))
@@ -101,7 +101,8 @@ def _beyond(ids: Ids, height: Array, low: _Ends, high: _Ends) -> NDArray[np.int6
             beyond = (height < low[ids]) | (height > high[ids])
         return np.bincount(ids[beyond & (ids > 0)], minlength=len(low))
     found, height = np.zeros(len(low), np.int64), np.ascontiguousarray(height, np.float32)
-    library.beyond(ids.size, *map(address, (ids, height, low, high, found)))
+    bounds = address(np.ascontiguousarray(low)), address(np.ascontiguousarray(high))
+    library.beyond(ids.size, address(ids), address(height), *bounds, address(found))
     return found
 
 
@@ -111,5 +112,5 @@ def _kept(ids: Ids, wide: Mask, leaks: NDArray[np.bool_]) -> Mask:
     if library is None:
         return np.asarray((ids > 0) & (wide | ~leaks[ids]))
     kept = np.empty(ids.shape, bool)
-    library.kept(ids.size, *map(address, (ids, wide, leaks, kept)))
+    library.kept(ids.size, address(ids), address(wide), address(leaks), address(kept))
     return kept

@@ -18,6 +18,18 @@ static int32_t joined(int32_t *parent, int32_t one, int32_t other) {
     return parent[one] = other;
 }
 
+/* Which neighbours have the same number; see `links_of`. */
+void of_one(int height, int width, const int32_t *ids, uint8_t *restrict down,
+            uint8_t *restrict right) {
+    for (int row = 0; row < height; ++row) {
+        const int32_t *own = ids + (size_t)row * width, *below = own + width;
+        uint8_t *under = down + (size_t)row * width, *beside = right + (size_t)row * (width - 1);
+        if (row < height - 1)
+            for (int n = 0; n < width; ++n) under[n] = (own[n] == below[n]) & (own[n] > 0);
+        for (int n = 0; n < width - 1; ++n) beside[n] = (own[n] == own[n + 1]) & (own[n] > 0);
+    }
+}
+
 /* Numbers of the pieces that linked pixels make, by their first pixels; see `connected`.
  *
  * ids: (h, w), 0 for what is no pixel. Returns how many there are, with that of no pixel, or -1. */

@@ -234,6 +234,22 @@ def ends_by_numpy(
     return found[0], found[1]
 
 
+def links_of(ids: Ids) -> list[Mask]:
+    """Which neighbours have the same number, other than 0, by axis: (h - 1, w), (h, w - 1)."""
+    library = written(_FILE)
+    if library is None:
+        pairs = [(ids[low], ids[high]) for low, high in map(sides, (0, 1))]
+        return [(first == second) & (first > 0) for first, second in pairs]
+    links = no_links(*ids.shape)
+    library.of_one(*ids.shape, address(np.ascontiguousarray(ids, np.int32)), *map(address, links))
+    return links
+
+
+def no_links(height: int, width: int) -> list[Mask]:
+    """Room for which neighbours are linked, by axis."""
+    return [np.empty((height - 1, width), bool), np.empty((height, width - 1), bool)]
+
+
 def planes(image: Array) -> Array:
     """The channels of an image one after another, (h, w, channels) -> (channels, h, w)."""
     return np.ascontiguousarray(image.transpose(2, 0, 1), np.float32)

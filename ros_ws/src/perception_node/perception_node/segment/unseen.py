@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from perception_node.errors import BadImageError
 from perception_node.masks import pixels_of
@@ -85,8 +84,8 @@ def unseen(region: Region, look: Look, links: Sequence[Mask], picture_area: int)
     if not len(doubtful):
         return ~everything
 
-    known = [mean_look(look, ids, facet) for facet in np.flatnonzero(behind)]
-    for facet in doubtful:
+    known = [mean_look(look, ids, facet) for facet in np.flatnonzero(behind).tolist()]
+    for facet in doubtful.tolist():
         hue, light = mean_look(look, ids, facet)
         bare[facet] = not any(
             np.linalg.norm(hue - other) < SAME_HUE and abs(light - lit) < SAME_LIGHT
