@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from perception_node.alignment import smoothed
 from perception_node.noise import color_noise
-from perception_node.segment.facets import Facets, Look, find_facets
+from perception_node.segment.facets import Facets, Look, find_facets, on_one_facet
 
 RED, BLUE = (180, 30, 30), (30, 50, 170)
 NO_DEPTH = np.full((40, 60), np.nan, np.float32)
@@ -25,7 +25,7 @@ def halves(left: tuple[int, ...], right: tuple[int, ...]) -> NDArray[np.uint8]:
 
 def facets_of(rgb: NDArray[np.uint8], depth: NDArray[np.float32] = NO_DEPTH) -> Facets:
     noise = color_noise(rgb)
-    return find_facets(EVERYWHERE, Look.of(smoothed(rgb, noise), noise), depth)
+    return find_facets(EVERYWHERE, on_one_facet(Look.of(smoothed(rgb, noise), noise), depth))
 
 
 def test_two_colours_are_two_facets_that_touch_along_their_border() -> None:
@@ -59,7 +59,8 @@ def test_a_jump_of_depth_ends_a_facet(jump: float, count: int) -> None:
 def test_pixels_that_are_no_candidates_are_of_no_facet() -> None:
     candidates = EVERYWHERE.copy()
     candidates[:, 25:35] = False
-    facets = find_facets(candidates, Look.of(halves(RED, RED), 0.0), NO_DEPTH)
+    look = Look.of(halves(RED, RED), 0.0)
+    facets = find_facets(candidates, on_one_facet(look, NO_DEPTH))
     assert facets.count == 2 and len(facets.borders) == 0
     assert not facets.ids[:, 25:35].any()
 

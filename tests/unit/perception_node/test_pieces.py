@@ -2,6 +2,7 @@
 """What C does with pixels is what numpy does with them."""
 
 from collections.abc import Callable
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -10,12 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from perception_scenes import PLACES, looking_camera
 
-from perception_node import alignment
+from perception_node import alignment, depth_gaps, light
 from perception_node.blocks import evidence
-from perception_node.quantiles import quantiles
-from perception_node.segment import Volume, facets, pieces, region
+from perception_node.quantiles import quantile_of_codes, quantiles
+from perception_node.segment import Volume, facets, leaks, pieces, region
 from perception_node.segment.facets import Facets, Look
 from perception_node.segment.pieces import Heights
+from perception_node.visual_module import near_content
 
 seeds = st.integers(0, 10_000)
 sides = st.integers(3, 30)
@@ -73,6 +75,14 @@ def same(fast: Any, slow: Any, tolerance: float = 0.0) -> None:
         np.testing.assert_allclose(fast, slow, rtol=0.0, atol=tolerance)
 
 
+def by_numpy(call: Callable[[], Any], *modules: ModuleType) -> Any:
+    """What a call gives where these modules have no C."""
+    with pytest.MonkeyPatch.context() as patch:
+        for module in modules:
+            patch.setattr(module, "written", lambda _file: None)
+        return call()
+
+
 @given(pictures)
 def test_pieces_and_their_borders(picture: Picture) -> None:
     fast = pieces.connected(picture.mask, picture.links)
@@ -97,11 +107,75 @@ def test_ends_of_values(picture: Picture) -> None:
 @given(pictures)
 def test_links_of_facets(picture: Picture) -> None:
     same(
-        facets._links(picture.look, picture.depth),
+        facets.on_one_facet(picture.look, picture.depth),
         facets.links_by_numpy(picture.look, picture.depth),
     )
     args = (picture.points, picture.depth)
     same(facets.on_one_body(*args), facets.bodies_by_numpy(*args))
+
+
+@given(pictures, st.integers(1, 9))
+def test_what_is_amid_facets(picture: Picture, side: int) -> None:
+    same(
+        facets.uniform(picture.ids, side),
+        by_numpy(lambda: facets.uniform(picture.ids, side), facets),
+    )
+
+
+@given(pictures, st.integers(1, 2))
+def test_facets_that_leak(picture: Picture, reach: int) -> None:
+    made = facets.find_facets(picture.mask, picture.links)
+
+    def call() -> tuple[Any, ...]:
+        found = leaks.without_leaks(made, picture.points[..., 2], reach)
+        return found.ids, found.borders, *made.links()
+
+    same(call(), by_numpy(call, facets, leaks, pieces))
+
+
+@given(pictures)
+def test_what_facets_look_like_and_how_many_pixels_they_have(picture: Picture) -> None:
+    def call() -> tuple[Any, ...]:
+        every = set(picture.ids.ravel().tolist())
+        means = [facets.mean_look(picture.look, picture.ids, facet) for facet in every]
+        return *means, facets.counts(picture.ids, picture.mask, 6)
+
+    same(call(), by_numpy(call, facets))
+
+
+@given(st.integers(1, 7), seeds, st.booleans())
+def test_what_explains_colours(count: int, seed: int, on_table: bool) -> None:
+    rng = np.random.default_rng(seed)
+    colors, table = rng.random((count, 3)), rng.random(3) if on_table else None
+
+    def call() -> tuple[Any, ...]:
+        fit = light.explain_colors(colors, table)
+        return fit.distances, fit.margins, fit.light, fit.gaps
+
+    same(call(), by_numpy(call, light))
+
+
+@given(st.integers(1, 3), st.integers(0, 24), seeds)
+def test_content_with_what_is_around_it(count: int, side: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    images = np.zeros((count, 3, 32, 32), np.float32)
+    for image in images:
+        top, left = rng.integers(0, 33 - side, 2)
+        image[:, top : top + side, left : left + side] = rng.random((3, side, side)) > 0.5
+    patch = rng.random((count, 4, 4, 3)).astype(np.float32)
+    empty, first = rng.random((20, 20, 3)).astype(np.float32), rng.integers(0, 12, (count, 2))
+
+    def call() -> tuple[Any, ...]:
+        around = near_content._surrounded(patch, empty, first, 8, np.full((count, 2), side % 5))
+        return *near_content._content(images), around
+
+    same(call(), by_numpy(call, near_content))
+
+
+@given(pictures, st.integers(0, 100))
+def test_quantiles_of_codes_are_those_of_numpy(picture: Picture, share: int) -> None:
+    codes = picture.rgb[..., 0]
+    assert quantile_of_codes(codes, share / 100) == np.percentile(codes, share)
 
 
 @given(pictures, st.integers(0, 8))
@@ -114,9 +188,7 @@ def test_sums_over_facets(picture: Picture, few: int) -> None:
 @given(pictures, st.floats(1.0, 30.0))
 def test_the_look_of_colours(picture: Picture, noise: float) -> None:
     look = Look.of(picture.rgb, noise)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(facets, "written", lambda _file: None)
-        slow = Look.of(picture.rgb, noise)
+    slow = by_numpy(lambda: Look.of(picture.rgb, noise), facets)
     same(look.chroma, slow.chroma, 1e-6)
     same(look.light, slow.light, 2e-6)
 
@@ -124,15 +196,14 @@ def test_the_look_of_colours(picture: Picture, noise: float) -> None:
 @given(pictures, st.integers(1, 4))
 def test_edges_that_are_aligned(picture: Picture, reach: int) -> None:
     rgb, depth = picture.rgb, picture.depth
-    same(alignment.fill(depth, rgb, reach), alignment.fill_by_numpy(depth, rgb, reach))
+    same(depth_gaps.fill(depth, rgb, reach), depth_gaps.fill_by_numpy(depth, rgb, reach))
     calls = [
         lambda: alignment.sharpened(rgb, reach, 1.0),
         lambda: alignment.without_edges(depth, reach),
+        lambda: alignment._moved_to_colour(depth, rgb, reach),
     ]
     fast = [call() for call in calls]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(alignment, "written", lambda _file: None)
-        same(fast, [call() for call in calls])
+    same(fast, by_numpy(lambda: [call() for call in calls], alignment, depth_gaps))
 
 
 @given(pictures)

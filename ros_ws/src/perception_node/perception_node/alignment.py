@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from tamp_runtime.machine_code import address, written
 
+from .depth_gaps import disk, fill
 from .noise import color_noise, depth_noise
 from .observation import Observation
 
@@ -34,8 +35,6 @@ SMEAR: Final = (1, 256)
 FILL_REACH: Final = 1
 #: for so many times,
 FILLS: Final = 2
-#: but only if their channels differ by less than this altogether [0..255].
-FILL_LIKENESS: Final = 60.0
 #: Noise that is less than this does not matter [0..255].
 MIN_NOISE: Final = 0.5
 #: Of pixels as far away as this [px] those are averaged that differ by less than a few times the
@@ -145,6 +144,36 @@ def _moved_to_colour(
     filled = np.where(cv2.dilate(empty, gap) > 0, NOTHING, inner)
     for _ in range(FILLS):
         filled = fill(filled, rgb, smear + FILL_REACH)
+    moved = _settle(filled, measured, inner)
+    return filled, moved, ~np.isnan(inner)
+
+
+def _settle(filled: Array, measured: Array, inner: Array) -> float:
+    """Gives back what was measured where depth did not move.
+
+    Args:
+        filled: what colours say, :data:`NOTHING` where nothing is, changed.
+        measured: NaN where depth is unknown, shape (h, w) [m].
+        inner: the same without that near edges.
+
+    Returns:
+        The part of pixels near edges that were measured on the other side.
+    """
+    library = written(_FILE)
+    if library is None:
+        return settle_by_numpy(filled, measured, inner)
+    own = [np.ascontiguousarray(image) for image in (measured, inner)]
+    found = np.zeros(2, np.int64)
+    library.settle(
+        filled.size, *map(ctypes.c_float, (STEP, EDGE, float(NOTHING))), address(filled),
+        *map(address, own), address(found),
+    )  # fmt: skip
+    near, other = found.tolist()
+    return other / near if near else 0.0
+
+
+def settle_by_numpy(filled: Array, measured: Array, inner: Array) -> float:
+    """As :func:`_settle`."""
     known = ~np.isnan(measured)
     both = np.isnan(inner) & known & ~np.isnan(filled)
     differ = np.abs(measured[both] - filled[both]) > STEP
@@ -152,20 +181,13 @@ def _moved_to_colour(
     rest = np.isnan(filled) | (both & (np.abs(measured - filled) <= EDGE))
     filled[rest] = measured[rest]
     filled[filled == NOTHING] = np.nan
-    return filled, float(differ.mean()) if len(differ) else 0.0, ~np.isnan(inner)
+    return float(differ.mean()) if len(differ) else 0.0
 
 
 def smear_of(width: int) -> int:
     """How far edges are smeared in a picture of this width [px]."""
     pixels, usual = SMEAR
     return max(1, round(pixels * width / usual))
-
-
-def disk(reach: int) -> list[tuple[int, int]]:
-    """Steps (down, right) to the pixels within a distance [px], the nearest ones first."""
-    span = range(-reach, reach + 1)
-    steps = [(i, j) for i in span for j in span if i * i + j * j <= (reach + 0.3) ** 2]
-    return sorted(steps, key=lambda step: step[0] ** 2 + step[1] ** 2)
 
 
 def sharpened(rgb: NDArray[np.uint8], reach: int, noise: float) -> tuple[NDArray[np.uint8], float]:
@@ -285,57 +307,3 @@ def bends_by_numpy(depth: Array, limit: float) -> NDArray[np.uint8]:
         np.fmax(bend[at], np.abs(inverse[before] - 2.0 * inverse[at] + inverse[after]), bend[at])
     with np.errstate(invalid="ignore"):
         return (bend * depth > limit).view(np.uint8)
-
-
-def fill(depth: Array, rgb: NDArray[np.uint8], reach: int) -> Array:
-    """Gives pixels without depth that of the neighbour, near by, whose colour is most like theirs.
-
-    Args:
-        depth: NaN where it is unknown, shape (h, w) [m].
-        rgb: shape (h, w, 3).
-        reach: how far away the neighbour can be [px].
-    """
-    library = written(_FILE)
-    if library is None:
-        return fill_by_numpy(depth, rgb, reach)
-    steps = np.array(disk(reach)[1:], np.intc)
-    # Of two that look alike the nearer one.
-    costs = (2.0 * np.hypot(steps[:, 0], steps[:, 1])).astype(np.float32)
-    depth, rgb = np.ascontiguousarray(depth, np.float32), np.ascontiguousarray(rgb)
-    known, around = ~np.isnan(depth), np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
-    near, filled = cv2.dilate(known.view(np.uint8), around), np.empty_like(depth)
-    library.fill(
-        *depth.shape, address(depth), address(near), address(rgb), len(steps), address(steps),
-        address(costs),
-        ctypes.c_float(FILL_LIKENESS), address(filled),
-    )  # fmt: skip
-    return filled
-
-
-def fill_by_numpy(depth: Array, rgb: NDArray[np.uint8], reach: int) -> Array:
-    """As :func:`fill`."""
-    unknown = np.isnan(depth)
-    near = cv2.dilate((~unknown).view(np.uint8), np.ones((2 * reach + 1, 2 * reach + 1), np.uint8))
-    at = np.flatnonzero(unknown & (near > 0))
-    if len(at) == 0:
-        return depth
-    width = depth.shape[1]
-    wide = width + 2 * reach
-    at_wide = (at // width + reach) * wide + at % width + reach
-    depths = np.pad(depth, reach, constant_values=np.nan).ravel()
-    colors = [np.pad(channel.astype(np.int16), reach, "edge").ravel() for channel in cv2.split(rgb)]
-    own = [channel[at_wide] for channel in colors]
-    best: NDArray[np.float32] = np.full(len(at), np.nan, np.float32)
-    least = np.full(len(at), FILL_LIKENESS, np.float32)
-    for down, right in disk(reach)[1:]:
-        there = at_wide + (down * wide + right)
-        found = depths[there]
-        # Of two that look alike the nearer one.
-        difference = np.full(len(at), 2.0 * np.hypot(down, right), np.float32)
-        for channel, mine in zip(colors, own):
-            difference += np.abs(channel[there] - mine)
-        better = (difference < least) & ~np.isnan(found)
-        best[better], least[better] = found[better], difference[better]
-    filled = depth.copy()
-    filled.reshape(-1)[at] = best
-    return filled

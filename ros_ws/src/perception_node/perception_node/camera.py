@@ -43,7 +43,7 @@ class PinholeCamera:
         if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-3:
             raise BadImageError("camera/extrinsics does not hold a unit quaternion")
 
-    @property
+    @functools.cached_property
     def position_world(self) -> Array:
         """The camera's centre, shape (3,) [m]."""
         return self.world_from_optical[:3, 3]

@@ -12,10 +12,12 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
+from tamp_runtime.machine_code import address, written
 
 from scene_graph import COLORS
 
@@ -78,6 +80,7 @@ _XYZ_FROM_RGB: Final = np.array(
     [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
 )
 _WHITE_XYZ: Final = _XYZ_FROM_RGB.sum(axis=1)
+_FILE: Final = Path(__file__).with_suffix(".c")
 
 
 @dataclass(frozen=True)
@@ -164,16 +167,7 @@ def _explain(
 ) -> ColorFit:
     """The same for lights of certain colours only, shape (lights, 3)."""
     diffuse, metal = _distances(_linear(colors), table, gains)
-    # A shade that differs by so many steps costs more than no name.
-    reach = int(np.sqrt(most / _OWN_SHADE_COST) / _STEP) + 2
-    costs = np.empty((len(_SHADES), *metal.shape), np.float32)
-    for scene in range(len(_SHADES)):
-        cost = costs[scene]
-        cost[:] = metal
-        for own in range(max(0, scene - reach), min(len(_SHADES), scene + reach + 1)):
-            np.minimum(
-                cost, diffuse[own] + _OWN_SHADE_COST * (_STEP * (own - scene)) ** 2, out=cost
-            )
+    costs = _of_scene(diffuse, metal, most)
     bounded = np.minimum(costs, most)  # (shades of the scene, lights, N, names)
     least_own = bounded.min(axis=3)
     tint = _GAIN_COST * (np.log(gains) ** 2).sum(axis=1)
@@ -198,6 +192,42 @@ def _explain(
         gains[light],
         _gaps(best, (others + costs).min(axis=(0, 1))),
     )
+
+
+def _of_scene(diffuse: Real, metal: Real, most: float) -> Real:
+    """Costs of names by the shade of the scene, where each block may have another one at a cost.
+
+    Args:
+        diffuse, metal: see :func:`_distances`.
+        most: what a block without a name costs [ΔE²].
+
+    Returns:
+        Shape (shades of the scene, lights, N, names).
+    """
+    # A shade that differs by so many steps costs more than no name.
+    reach = int(np.sqrt(most / _OWN_SHADE_COST) / _STEP) + 2
+    apart: Array = np.asarray(
+        _OWN_SHADE_COST * (_STEP * np.arange(reach + 1)) ** 2, dtype=np.float64
+    )
+    library = written(_FILE)
+    if library is None:
+        return of_scene_by_numpy(diffuse, metal, apart)
+    costs, steps = np.empty(diffuse.shape, np.float32), apart.astype(np.float32)
+    library.of_scene(
+        len(_SHADES), metal.size, reach, address(diffuse), address(metal), address(steps),
+        address(costs),
+    )  # fmt: skip
+    return costs
+
+
+def of_scene_by_numpy(diffuse: Real, metal: Real, apart: Array) -> Real:
+    """As :func:`_of_scene`; ``apart`` is what a shade costs so many steps away."""
+    costs, reach = np.empty(diffuse.shape, np.float32), len(apart) - 1
+    for scene, cost in enumerate(costs):
+        cost[:] = metal
+        for own in range(max(0, scene - reach), min(len(_SHADES), scene + reach + 1)):
+            np.minimum(cost, diffuse[own] + np.float32(apart[abs(own - scene)]), out=cost)
+    return costs
 
 
 def _gaps(best: Array, by_name: Array) -> Array:
@@ -228,38 +258,63 @@ def _distances(light: Array, table: Array | None, gains: Array) -> tuple[Real, R
     metal = np.full(diffuse.shape[1:], np.inf, np.float32)
     wanted = np.log(_BRIGHTNESS / np.maximum(light @ _LUMINANCE, 1e-4))
     levels = np.abs(wanted[:, None] - np.log(_LEVELS)).argmin(axis=1)
-    tints = []
-    if table is not None:
-        before = _linear(table)
-        tint = before / of_light
-        tint = tint / tint.mean(axis=1, keepdims=True)
-        tints = [of_light * tint**part for part in _OF_TINT]
-        usual = _OF_TABLE * float(before.mean()) + _OF_ROOM
-        shade_cost = _METAL_SHADE_COST * (np.log(_SHADES) - np.log(usual) / _GAMMA) ** 2
-        shade_cost = (shade_cost + _METAL_COST)[:, None].astype(np.float32)
-    sheen_cost = np.array(_SHEEN_COST, np.float32)[:, None, None]
-    plain = len(_SHADES) * len(_NAMES)
-    for index, level in enumerate(levels):
-        shown, squares = _shown(gains.tobytes(), int(level))
-        seen = light[index] * _LEVELS[level]
-        cost = _squared(seen / of_light, shown, squares)
-        cost = cost.reshape(lights, len(_SHEEN), len(_SHADES), len(_NAMES))
-        diffuse[:, :, index] = (cost + sheen_cost).min(axis=1).transpose(1, 0, 2)
-        for colored in tints:
-            cost = _squared(seen / colored, shown[:, :plain], squares[:, :plain])
+    seen = (light * _LEVELS[levels][:, None])[:, None]
+    plain, of_gains = len(_SHADES) * len(_NAMES), gains.tobytes()
+    shown = [_shown(of_gains, int(level)) for level in levels]
+    for index, at in enumerate(_lab(seen / of_light)):
+        _put_diffuse(diffuse, index, at, *shown[index])
+    if table is None:
+        return diffuse, metal
+    before = _linear(table)
+    tint = before / of_light
+    tint = tint / tint.mean(axis=1, keepdims=True)
+    usual = _OF_TABLE * float(before.mean()) + _OF_ROOM
+    shade_cost = _METAL_SHADE_COST * (np.log(_SHADES) - np.log(usual) / _GAMMA) ** 2
+    shade_cost = (shade_cost + _METAL_COST)[:, None].astype(np.float32)
+    for part in _OF_TINT:
+        for index, at in enumerate(_lab(seen / (of_light * tint**part))):
+            names, squares = shown[index]
+            cost = _squared(at, names[:, :plain], squares[:, :plain])
             cost = cost.reshape(lights, len(_SHADES), len(_NAMES)) + shade_cost
             np.minimum(metal[:, index], cost.min(axis=1), out=metal[:, index])
     return diffuse, metal
 
 
-def _squared(seen: Array, shown: Real, squares: Real) -> Real:
+def _put_diffuse(diffuse: Real, index: int, at: Real, shown: Real, squares: Real) -> None:
+    """Fills in a block's distances from all names, with what is mirrored as costs least.
+
+    Args:
+        diffuse: see :func:`_distances`; that of the block ``index`` is written.
+        at: what is seen of the block in each light, CIE Lab, shape (lights, 3).
+        shown, squares: see :func:`_shown`.
+    """
+    library = written(_FILE)
+    if library is None:
+        put_diffuse_by_numpy(diffuse, index, at, shown, squares)
+        return
+    # |a - b|² by a product.
+    product, length = shown @ (-2.0 * at)[:, :, None], (at**2).sum(axis=1)
+    library.put_diffuse(
+        len(at), len(_SHEEN), len(_SHADES), diffuse.shape[2], len(_NAMES), index,
+        *map(address, (product, squares, length, np.array(_SHEEN_COST, np.float32), diffuse)),
+    )  # fmt: skip
+
+
+def put_diffuse_by_numpy(diffuse: Real, index: int, at: Real, shown: Real, squares: Real) -> None:
+    """As :func:`_put_diffuse`."""
+    cost = _squared(at, shown, squares)
+    cost = cost.reshape(len(at), len(_SHEEN), len(_SHADES), len(_NAMES))
+    sheen_cost = np.array(_SHEEN_COST, np.float32)[:, None, None]
+    diffuse[:, :, index] = (cost + sheen_cost).min(axis=1).transpose(1, 0, 2)
+
+
+def _squared(at: Real, shown: Real, squares: Real) -> Real:
     """Squared distances in CIE Lab of what is seen in each light from all that may be shown in it.
 
     Args:
-        seen: linear, shape (lights, 3).
+        at: in CIE Lab, shape (lights, 3).
         shown, squares: see :func:`_shown`.
     """
-    at = _lab(seen)
     # |a - b|² by a product.
     product = shown @ (-2.0 * at)[:, :, None]
     return np.maximum(product[..., 0] + squares + (at**2).sum(axis=1)[:, None], np.float32(0.0))

@@ -15,6 +15,7 @@ from scene_graph import UNKNOWN, object_name
 
 from .light import MIN_MARGIN, ColorFit, explain_colors
 from .name_sets import NameSets, possible_colors
+from .quantiles import quantile_of_codes
 from .segment import Segments
 
 Array = NDArray[np.float64]
@@ -133,7 +134,8 @@ def mean_colors(rgb: NDArray[np.uint8], masks: Sequence[NDArray[np.bool_]]) -> A
         left, top, width, height = cv2.boundingRect(mask.view(np.uint8))
         box = np.s_[top : top + height, left : left + width]
         pixels = rgb[box][mask[box]]
-        medians.append(np.partition(pixels, len(pixels) // 2, axis=0)[len(pixels) // 2])
+        ordered = (np.bincount(pixels[:, channel]).cumsum() for channel in range(3))
+        medians.append([np.searchsorted(below, len(pixels) // 2, "right") for below in ordered])
     return np.array(medians).reshape(-1, 3) / 255.0
 
 
@@ -159,7 +161,9 @@ def color_before(rgb: NDArray[np.uint8], masks: Sequence[NDArray[np.bool_]]) -> 
         strip = np.s_[top + height + near : top + height + far, left : left + width]
         strips.append(rgb[strip][~taken[strip]])
     pixels = np.concatenate(strips)
-    return np.median(pixels, axis=0) / 255.0 if len(pixels) >= _SOME else None
+    if len(pixels) < _SOME:
+        return None
+    return np.array([quantile_of_codes(pixels[:, channel], 0.5) for channel in range(3)]) / 255.0
 
 
 def unique_names(

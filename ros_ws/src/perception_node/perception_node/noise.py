@@ -8,6 +8,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from .quantiles import quantile_of_codes
+
 #: Noise of depth is measured on pixels this far apart, further than neighbours share it [px].
 DEPTH_STEP: Final = 4
 #: The median over so many rows is known to one in a hundred.
@@ -49,5 +51,11 @@ def _noise(rows: NDArray[Any], step: int) -> float:
     """Of rows of values that mostly change steadily, by three that are ``step`` pixels apart."""
     bends = np.abs(rows[:, : -2 * step] - 2 * rows[:, step:-step] + rows[:, 2 * step :])
     found = bends[np.isfinite(bends)] if bends.dtype.kind == "f" else bends
+    if not found.size:
+        return 0.0
     # From the median of normal errors' sizes; a bend's variance is 1 + 4 + 1 times that of a value.
-    return 1.4826 / np.sqrt(6.0) * float(np.median(found)) if found.size else 0.0
+    return (
+        1.4826
+        / np.sqrt(6.0)
+        * (float(np.median(found)) if found.dtype.kind == "f" else quantile_of_codes(found, 0.5))
+    )

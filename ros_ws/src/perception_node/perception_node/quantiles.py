@@ -36,3 +36,12 @@ def quantiles(values: NDArray[np.floating], *shares: float) -> list[Any]:
             low + part * (high - low) if part < 0.5 else high - (1.0 - part) * (high - low)
         )
     return found
+
+
+def quantile_of_codes(codes: NDArray[np.integer], share: float) -> float:
+    """As :func:`quantiles` of few natural numbers, which are counted, not parted; any shape."""
+    counts = np.bincount(codes.ravel()).cumsum()
+    below, part = divmod(share * (codes.size - 1), 1.0)
+    low, high = np.searchsorted(counts, [below, min(below + 1.0, codes.size - 1.0)], "right")
+    apart = float(high - low)
+    return float(low + part * apart if part < 0.5 else high - (1.0 - part) * apart)

@@ -103,6 +103,8 @@ def _is_higher(
     width = 2.0 * config.column_half_width
     ends = _box(place, config.column_height - ABOVE, (width, width, 2.0 * ABOVE))
     rows, columns, rays = _rays(camera, ends)
+    if np.count_nonzero(segments.label_image[rows, columns]) <= STRAY:
+        return False
     known = _known(observation.depth[rows, columns])
     rows, columns, rays = rows[known], columns[known], rays[known]
     points = camera.position_world + rays * observation.depth[rows, columns, None]

@@ -142,6 +142,16 @@ class Problem:
         seen = Seen(seen.origin, points, rays, noise, seen.floor)
         return Problem(self.model, self.camera, seen, *others)
 
+    def only(self, blocks: Sequence[int]) -> Problem:
+        """The same of some of the blocks, by their indices."""
+        some, seen = list(blocks), self.seen
+        own = (self.used, self.outline, self.inverse, self.rows, self.values)
+        points, rays, noise, *others = (
+            array[some] for array in (seen.points, seen.rays, seen.noise, *own)
+        )
+        seen = Seen(seen.origin, points, rays, noise, seen.floor)
+        return Problem(self.model, self.camera, seen, *others)
+
     def at(self, parameters: Array) -> _Linearised:
         """What the models' residuals are there."""
         surface = self.model.surface(parameters, self.seen)
@@ -213,13 +223,16 @@ class _Task(ctypes.Structure):
     ]
 
 
-def descended(problem: Problem, parameters: Array, trials: int, enough: float) -> Lowest:
+def descended(
+    problem: Problem, parameters: Array, trials: int, enough: float, offs: bool = True
+) -> Lowest:
     """Damped Gauss-Newton.
 
     Args:
         parameters: where it begins, shape (B, P).
         trials: steps at most; 0: only what is there is told.
         enough: a step that changes no parameter by more is the last.
+        offs: whether ``off`` is wanted; without it may be empty.
     """
     library, model, seen = written(_FILE), problem.model, problem.seen
     if library is None or model.shape not in IN_C:
@@ -250,12 +263,13 @@ def descended(problem: Problem, parameters: Array, trials: int, enough: float) -
     count = len(steps)
     found = Lowest(
         np.array(parameters, np.float64, order="C"),
-        np.empty((blocks, count, count)), np.empty(blocks), np.empty((blocks, points)),
+        np.empty((blocks, count, count)), np.empty(blocks), np.empty((blocks, points * offs)),
     )  # fmt: skip
     library.descend(
         ctypes.byref(task), blocks, *map(address, own), len(extents), address(extents),
         address(limits),
-        trials, *map(ctypes.c_double, (enough, GAIN, MAX_DAMPING)), *map(address, found),
+        trials, *map(ctypes.c_double, (enough, GAIN, MAX_DAMPING)), *map(address, found[:3]),
+        address(found.off) if offs else None,
     )  # fmt: skip
     return found
 

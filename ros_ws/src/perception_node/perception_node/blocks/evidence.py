@@ -158,7 +158,9 @@ def covering(
     """For each block the labels of those that may stand on it, directly or not."""
     middles = np.full((len(segments), 3), np.nan)
     for index, segment in enumerate(segments):
-        rows, columns = pixels_of(segment.part)
+        left, top, width, height = segment.box
+        rows, columns = pixels_of(segment.part[top : top + height, left : left + width])
+        rows, columns = rows + top, columns + left
         found = depth[rows, columns]
         known = (found > 0.0) & np.isfinite(found)
         if known.any():

@@ -38,18 +38,18 @@ class Fit:
     Attributes:
         model: its kind.
         parameters: shape (P,).
-        covariance: shape (P, P).
         cost: half the sum of squared residuals, see :mod:`.descent`, a residual.
         off: of the n points from the model's faces, shape (n,) [m].
         distance: their root mean square, the farthest fifth left out [m].
+        solved: what it was fitted in, together with others, and which of its blocks it is.
     """
 
     model: Model
     parameters: Array
-    covariance: Array
     cost: float
     off: Array
     distance: float
+    solved: tuple[Problem, Lowest, int]
 
 
 def fit(
@@ -62,9 +62,10 @@ def fit(
         evidence: from one picture; at least one.
     """
     problem = Problem.of(model, priors, evidence)
-    near = descended(problem.blurred(*COARSE), np.stack(starts), MAX_TRIALS[0], ENOUGH[0])
+    near = descended(
+        problem.blurred(*COARSE), np.stack(starts), MAX_TRIALS[0], ENOUGH[0], offs=False
+    )
     found = descended(problem, near.parameters, MAX_TRIALS[1], ENOUGH[1])
-    covariances = _covariances(problem, found)
     fits = []
     for index, item in enumerate(evidence):
         off = found.off[index, : len(item.noise)]
@@ -73,13 +74,29 @@ def fit(
             Fit(
                 model,
                 found.parameters[index],
-                covariances[index],
                 float(found.cost[index]) / (len(item.noise) + len(item.outline)),
                 off,
                 float(np.sqrt(squares.mean())),
+                (problem, found, index),
             )
         )
     return fits
+
+
+def covariances(fits: Sequence[Fit]) -> list[Array]:
+    """Of the parameters of each fit, shape (P, P): of those that are the best ones only."""
+    together: dict[int, list[int]] = {}
+    for number, item in enumerate(fits):
+        together.setdefault(id(item.solved[0]), []).append(number)
+    every: list[Array] = [np.empty(0)] * len(fits)
+    for numbers in together.values():
+        problem, found, _ = fits[numbers[0]].solved
+        blocks = [fits[number].solved[2] for number in numbers]
+        if blocks != list(range(len(found.cost))):
+            problem, found = problem.only(blocks), Lowest(*(array[blocks] for array in found))
+        for number, covariance in zip(numbers, _covariances(problem, found)):
+            every[number] = covariance
+    return every
 
 
 def _covariances(problem: Problem, found: Lowest) -> Array:
@@ -97,7 +114,7 @@ def _covariances(problem: Problem, found: Lowest) -> Array:
     # All at once, both ways of each direction as blocks of their own.
     changes = PROBE * np.concatenate([hidden, -hidden])
     changed = (parameters + changes).reshape(-1, parameters.shape[1])
-    probed = descended(problem.repeated(len(changes)), changed, 0, 0.0)
+    probed = descended(problem.repeated(len(changes)), changed, 0, 0.0, offs=False)
     rises = probed.cost.reshape(2, len(hidden), -1).min(axis=0) - found.cost
     # A parabola that rises by this much over the step has this variance.
     variances = PROBE**2 / (2.0 * np.maximum(rises, 1e-3))

@@ -18,7 +18,7 @@ from scene_graph import BOX, CYLINDER
 
 from .descent import Prior
 from .evidence import Evidence, covering, evidence_of
-from .fit import Fit, fit
+from .fit import Fit, covariances, fit
 from .models import BallModel, BoxModel, CylinderModel, Model
 
 Array = NDArray[np.float64]
@@ -125,10 +125,11 @@ def measure_blocks(
     surfaces = []
     fits, rivals = _best(evidence, noise)
     sharp = noise < NOISY and edge_doubt == 0.0
-    for best, item, rival in zip(fits, evidence, rivals):
+    for best, item, rival, covariance in zip(fits, evidence, rivals, covariances(fits)):
         far = FLAT + FLAT_NOISE * float(quantiles(item.noise, 0.5)[0])
         upright = best.distance <= far and best.cost <= BAD
-        surfaces.append(replace(_surface(best, item), rival=rival, upright=upright, sharp=sharp))
+        surface = _surface(best, item, covariance)
+        surfaces.append(replace(surface, rival=rival, upright=upright, sharp=sharp))
     return tuple(surfaces)
 
 
@@ -167,8 +168,10 @@ def _turn_poor_ones(best: list[Fit], evidence: Sequence[Evidence]) -> None:
     if not again:
         return
     starts, priors = [], []
+    begins = {index: _box(evidence[index]) for index in poor}
     for index, turn in again:
-        start, prior = _box(evidence[index])
+        start, prior = begins[index]
+        start = start.copy()
         start[2] += turn
         starts.append(start)
         priors.append(prior)
@@ -251,14 +254,14 @@ def _ball(evidence: Evidence) -> tuple[Array, Prior]:
     return start, Prior.about(start, np.array([DOUBT, DOUBT, DOUBT, 0.5 * DOUBT]))
 
 
-def _surface(best: Fit, evidence: Evidence) -> BlockSurface:
-    """What was fitted, in the parameters of a box."""
+def _surface(best: Fit, evidence: Evidence, covariance: Array) -> BlockSurface:
+    """What was fitted, in the parameters of a box; the covariance is that of the model's own."""
     p = best.parameters
     if best.model.shape == BOX:
         turn = round(p[2] / (np.pi / 2))
         widths = (p[3], p[4]) if turn % 2 == 0 else (p[4], p[3])
         order = [0, 1, 2, 3, 4, 5, 6] if turn % 2 == 0 else [0, 1, 2, 4, 3, 5, 6]
-        covariance = best.covariance[np.ix_(order, order)]
+        covariance = covariance[np.ix_(order, order)]
         values = np.array([p[0], p[1], p[2] - turn * np.pi / 2, *widths, p[5], p[6]])
     else:
         to_box = np.zeros((7, len(p)))
@@ -269,7 +272,7 @@ def _surface(best: Fit, evidence: Evidence) -> BlockSurface:
             to_box[[3, 4], 3] = 2.0
             to_box[[5, 6], 2] = 1.0
             to_box[[5, 6], 3] = -1.0, 1.0
-        values, covariance = to_box @ p, to_box @ best.covariance @ to_box.T
+        values, covariance = to_box @ p, to_box @ covariance @ to_box.T
     x, y, yaw, along, across, low, high = (float(value) for value in values)
     return BlockSurface(
         best.model.shape, (x, y), yaw, (along, across), low, high, covariance,

@@ -165,8 +165,8 @@ def find_occlusion(
     with np.errstate(invalid="ignore"):
         near = (depth[part] > 0) & (depth[part] < columns.greatest_depth(camera))
     rows, across = pixels_of(behind[part] & (segments.label_image[part] == 0) & near)
+    rays = _rays(camera, *((side.start, side.stop) for side in part))[rows, across]
     rows, across = rows + part[0].start, across + part[1].start
-    rays = camera.rays_world(np.stack([across, rows], axis=-1))
     points = camera.position_world + rays * depth[rows, across, None]
     hidden = np.zeros(depth.shape, bool)
     hides = columns.hidden_by(points, camera)
@@ -177,6 +177,13 @@ def find_occlusion(
             hides &= ~_is_of(block, points)
     hidden[rows[hides], across[hides]] = True
     return _occlusion(hidden, columns, regions, camera)
+
+
+@functools.lru_cache(maxsize=4)
+def _rays(camera: PinholeCamera, rows: tuple[int, int], columns: tuple[int, int]) -> Array:
+    """Of the pixels of some rows and columns, from the first to that after the last, (h, w, 3)."""
+    across, down = np.meshgrid(np.arange(*columns), np.arange(*rows))
+    return camera.rays_world(np.stack([across, down], axis=-1))
 
 
 def _occlusion(

@@ -51,7 +51,7 @@ def check_segments(
     """
     same_pixels = f"shows the same pixels as {segments.source}"
     for segment in segments:
-        left, top, width, height = cv2.boundingRect(segment.part.astype(np.uint8))
+        left, top, width, height = segment.box
         box = np.s_[top : top + height, left : left + width]
         around = np.s_[
             max(0, top - EDGE_WIDTH) : top + height + EDGE_WIDTH,
@@ -90,10 +90,14 @@ def _stands_before(depth: NDArray[np.floating], of_block: NDArray[np.floating]) 
 
 def _outline(part: Mask) -> Mask:
     """A part's convex outline, filled."""
+    # Its corners are ends of rows.
+    rows = np.flatnonzero(part.any(axis=1))
+    first = part[rows].argmax(axis=1)
+    last = part.shape[1] - 1 - part[rows, ::-1].argmax(axis=1)
+    points = np.stack([np.concatenate([first, last]), np.concatenate([rows, rows])], axis=-1)
     region = np.zeros(part.shape, np.uint8)
-    points = cv2.findNonZero(part.astype(np.uint8))
-    cv2.fillConvexPoly(region, cv2.convexHull(points), 1)
-    return region.astype(bool)
+    cv2.fillConvexPoly(region, cv2.convexHull(points.astype(np.int32)), 1)
+    return region.view(bool)
 
 
 def _others(label_image: NDArray[np.integer], outline: Mask, label: int) -> float:

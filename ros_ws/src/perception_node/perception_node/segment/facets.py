@@ -17,16 +17,18 @@ import numpy as np
 from numpy.typing import NDArray
 from tamp_runtime.machine_code import address, written
 
+from perception_node.quantiles import quantile_of_codes
+
 from .pieces import (
     Array,
     Ids,
     Mask,
     borders,
     connected,
-    ends_by_number,
     links_of,
+    no_links,
+    planes,
     sides,
-    spread,
 )
 
 #: Neighbours whose hue and saturation differ by more than this are of two facets: the distance of
@@ -39,9 +41,6 @@ DEPTH_STEP: Final = 0.02
 #: of a lid, which is level to this [m], further than this.
 LID_STEP: Final = 0.005
 LID_DEPTH: Final = 0.1
-#: A facet leaks of which so many pixels are higher or lower than the face by more than this [m].
-LEAK: Final = 0.01
-LEAK_PIXELS: Final = 10
 #: Brightness below which a colour has no hue that can be told: as part of that of the picture's
 #: brightest parts, and in standard deviations of the picture's noise.
 DARK: Final = 0.05
@@ -70,18 +69,20 @@ class Look:
             rgb: shape (h, w, 3).
             noise: that its channels had, before it was smoothed [0..255].
         """
-        brightness = np.maximum.reduce(cv2.split(rgb[::2, ::2]))
-        brightest = float(np.percentile(brightness, 95))
+        library, channels = written(_FILE), cv2.split(rgb)
+        brightest = quantile_of_codes(
+            np.maximum.reduce([channel[::2, ::2] for channel in channels]), 0.95
+        )
         dark = np.float32(max(DARK * brightest, DARK_NOISE * noise, 1.0))
-        library = written(_FILE)
         if library is None:
             return cls(*look_by_numpy(rgb, dark))
-        rgb = np.ascontiguousarray(rgb)
-        chroma, light = np.empty(rgb.shape, np.float32), np.empty(rgb.shape[:2], np.float32)
+        light = np.empty(rgb.shape[:2], np.float32)
+        shares = np.empty((3, *light.shape), np.float32)
         library.look(
-            light.size, address(rgb), ctypes.c_float(float(dark)), address(chroma), address(light)
-        )
-        return cls(chroma, light)
+            light.size, *map(address, channels), ctypes.c_float(float(dark)), address(shares),
+            address(light),
+        )  # fmt: skip
+        return cls(shares.transpose(1, 2, 0), light)
 
     def part(self, box: tuple[slice, slice]) -> Look:
         """That of some rows and columns."""
@@ -116,65 +117,40 @@ class Facets:
         """Which neighbours are of one facet, by axis: (h - 1, w), (h, w - 1)."""
         return links_of(self.ids)
 
+    def thick(self, width: int) -> Mask:
+        """Whether facets are anywhere wider and higher than so many pixels, shape (count + 1,)."""
+        thick = np.zeros(self.count + 1, bool)
+        thick[self.ids[uniform(self.ids, width + 1)]] = True
+        return thick
 
-def find_facets(candidates: Mask, look: Look, depth: Array) -> Facets:
+
+def find_facets(candidates: Mask, links: Sequence[Mask]) -> Facets:
     """Splits the candidates where colour, brightness or depth jump.
 
     Args:
         candidates: the pixels that may be of blocks, shape (h, w).
-        look: the picture.
-        depth: NaN where it is unknown, which is no jump, shape (h, w) [m].
+        links: see :func:`on_one_facet`.
     """
-    ids, count = facet_ids(candidates, look, depth)
-    return Facets(ids, count, borders(count + 1, ids))
+    count, ids = connected(candidates, links)
+    return Facets(ids, count - 1, borders(count, ids))
 
 
-def facet_ids(candidates: Mask, look: Look, depth: Array) -> tuple[Ids, int]:
-    """``ids`` and ``count`` of :func:`find_facets`."""
-    count, ids = connected(candidates, _links(look, depth))
-    return ids, count - 1
-
-
-def without_leaks(facets: Facets, height: Array, reach: int) -> Facets:
-    """Facets without the narrow parts of those that leak, each piece that is left one of its own.
-
-    The rim of a face, where it mirrors the room or mixes with what is behind it, looks like the
-    rims of others, and so links faces that have nothing to do with one another. The strips of a
-    face that are of the same block are as high as it is; of one that leaks they are not. Pieces
-    border on each other across the strips between them.
+def uniform(ids: Ids, side: int) -> Mask:
+    """Which pixels are in the middle of a square of one facet, or of what is of it in the picture.
 
     Args:
-        height: over the table, NaN where it is not known, shape (h, w) [m].
-        reach: strips are no wider than ``2 reach`` [px].
+        side: of the square [px].
     """
-    around = np.ones((2 * reach + 1,) * 2, np.uint8)
-    ids = facets.ids.astype(np.float32)
-    inner = (cv2.erode(ids, around) == ids) & (cv2.dilate(ids, around) == ids) & (ids > 0.0)
-    grown = cv2.dilate(np.where(inner, ids, 0.0).astype(np.float32), around)
-    none = np.float32(facets.count + 1)
-    least = cv2.erode(np.where(inner, ids, none).astype(np.float32), around)
-    wide = (facets.ids > 0) & ((grown == ids) | (least == ids))
-    same = facets.links()
-    count, pieces = connected(wide, same)
-    # The largest piece of each facet, and how many pixels are higher or lower than it.
-    pixels = np.bincount(pieces.ravel(), minlength=count)
-    largest = np.zeros(facets.count + 1, np.intp)
-    order = np.argsort(pixels[1:], kind="stable") + 1
-    owner = np.zeros(count, np.intp)
-    owner[pieces[wide]] = facets.ids[wide]
-    largest[owner[order]] = order
-    of_largest = np.where(wide & (largest[facets.ids] == pieces), facets.ids, 0)
-    ends = ends_by_number(of_largest.ravel(), height.reshape(-1, 1), facets.count + 1)
-    low, high = (end[:, 0] for end in ends)
-    with np.errstate(invalid="ignore"):
-        beyond = (height < low[facets.ids] - LEAK) | (height > high[facets.ids] + LEAK)
-    beyond &= facets.ids > 0
-    leaks = np.bincount(facets.ids[beyond], minlength=facets.count + 1) >= LEAK_PIXELS
-    kept = (facets.ids > 0) & (wide | ~leaks[facets.ids])
-    count, pieces = connected(kept, same)
-    shared = np.where(wide, pieces, 0)
-    spread(shared, facets.ids > 0, 2 * reach)
-    return Facets(pieces, count - 1, borders(count, pieces, shared))
+    library = written(_FILE)
+    if library is None:
+        around, values = np.ones((side, side), np.uint8), ids.astype(np.float32)
+        return np.asarray(
+            (cv2.erode(values, around) == values) & (cv2.dilate(values, around) == values)
+        )
+    ids, inner = np.ascontiguousarray(ids, np.int32), np.empty(ids.shape, bool)
+    if library.uniform(*ids.shape, address(ids), side // 2, side - 1 - side // 2, address(inner)):
+        raise MemoryError("no memory to find what is amid facets")
+    return inner
 
 
 def on_one_body(points: Array, depth: Array) -> list[Mask]:
@@ -189,7 +165,7 @@ def on_one_body(points: Array, depth: Array) -> list[Mask]:
     library = written(_FILE)
     if library is None:
         return bodies_by_numpy(points, depth)
-    return _linked(library.bodies, [points, depth], [DEPTH_STEP, LID_STEP, LID_DEPTH])
+    return _linked(library.bodies, [points[..., 2], depth], [DEPTH_STEP, LID_STEP, LID_DEPTH])
 
 
 def bodies_by_numpy(points: Array, depth: Array) -> list[Mask]:
@@ -204,17 +180,30 @@ def bodies_by_numpy(points: Array, depth: Array) -> list[Mask]:
     return links
 
 
-def _links(look: Look, depth: Array) -> Sequence[Mask]:
-    """Which neighbours are of one facet, by axis: (h - 1, w), (h, w - 1)."""
+def on_one_facet(look: Look, depth: Array) -> list[Mask]:
+    """Which neighbours are of one facet, by axis: (h - 1, w), (h, w - 1).
+
+    Args:
+        depth: NaN where it is unknown, which is no jump, shape (h, w) [m].
+    """
     library = written(_FILE)
     if library is None:
         return links_by_numpy(look, depth)
-    images, steps = [look.chroma, look.light, depth], [CHROMA_STEP**2, LIGHT_STEP, DEPTH_STEP]
-    return _linked(library.links, images, steps)
+    images = [planes(look.chroma), look.light, depth]
+    return _linked(library.links, images, [CHROMA_STEP**2, LIGHT_STEP, DEPTH_STEP])
 
 
-def links_by_numpy(look: Look, depth: Array) -> Sequence[Mask]:
-    """As :func:`_links`."""
+def links_in(links: Sequence[Mask], box: tuple[slice, slice]) -> list[Mask]:
+    """Those between pixels of some rows and columns."""
+    rows, columns = box
+    return [
+        links[0][rows.start : rows.stop - 1, columns],
+        links[1][rows, columns.start : columns.stop - 1],
+    ]
+
+
+def links_by_numpy(look: Look, depth: Array) -> list[Mask]:
+    """As :func:`on_one_facet`."""
     links = []
     with np.errstate(invalid="ignore"):
         for low, high in map(sides, (0, 1)):
@@ -228,7 +217,7 @@ def _linked(
 ) -> list[Mask]:
     """Which neighbours C finds linked in images, the last of which is (h, w), by axis."""
     height, width = images[-1].shape
-    links = [np.zeros((height - 1, width), bool), np.zeros((height, width - 1), bool)]
+    links = no_links(height, width)
     own = [np.ascontiguousarray(array, np.float32) for array in (*images, steps)]
     neighbours(height, width, *map(address, (*own, *links)))
     return links
@@ -263,8 +252,12 @@ def sums(facets: Facets, look: Look, points: Array, sure: Mask, few: int) -> Sum
     library, count = written(_FILE), facets.count + 1
     if library is None:
         return sums_by_numpy(facets, look, points, sure, few)
-    images = (facets.ids, sure, points, look.chroma, look.light)
-    own = [np.ascontiguousarray(image) for image in images]
+    images = [points.transpose(2, 0, 1), look.chroma.transpose(2, 0, 1), look.light, sure]
+    if any(image.strides[-1] != image.itemsize for image in images):
+        images = [np.ascontiguousarray(image) for image in images]
+    # How far rows and channels are from one another.
+    apart = [np.array(image.strides) // image.itemsize for image in images]
+    strides = np.concatenate([steps[:-1] for steps in apart]).astype(np.int64)
     found = Sums(
         np.zeros(count, np.int64),
         np.zeros(count, np.int64),
@@ -272,7 +265,10 @@ def sums(facets: Facets, look: Look, points: Array, sure: Mask, few: int) -> Sum
         np.zeros((count, 3)),
         np.zeros((count, 6)),
     )
-    library.sums(facets.ids.size, count, *map(address, own), few, *map(address, found))
+    library.sums(
+        *facets.ids.shape, count, *map(address, (facets.ids, *images, strides)), few,
+        *map(address, found),
+    )  # fmt: skip
     return found
 
 
@@ -296,6 +292,29 @@ def sums_by_numpy(facets: Facets, look: Look, points: Array, sure: Mask, few: in
     products = away[:, [0, 0, 0, 1, 1, 2]] * away[:, [0, 1, 2, 1, 2, 2]]
     spreads = mean(products, of, relied)
     return Sums(pixels, many_sure, mean(colors, ids, pixels), centres, spreads)
+
+
+def counts(ids: Ids, some: Mask, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """How many pixels each facet has, and how many of some of them, shape (count,) each."""
+    library = written(_FILE)
+    if library is None:
+        return np.bincount(ids.ravel(), minlength=count), np.bincount(ids[some], minlength=count)
+    found = np.zeros((2, count), np.int64)
+    own = map(address, map(np.ascontiguousarray, (ids, some)))
+    library.counts(ids.size, *own, count, address(found))
+    return found[0], found[1]
+
+
+def mean_look(look: Look, ids: Ids, facet: int) -> tuple[NDArray[np.float32], np.float32]:
+    """Chroma, shape (3,), and light of a facet."""
+    mask = ids == facet
+    light = look.light[mask]
+    library = written(_FILE)
+    if library is None:
+        return np.ascontiguousarray(look.chroma[mask]).mean(axis=0), light.mean()
+    total = np.zeros(3, np.float32)
+    library.chromas(ids.size, address(mask), address(planes(look.chroma)), address(total))
+    return np.asarray(total / np.float32(len(light))), light.mean()
 
 
 def alike(look: Look, pixels: tuple[NDArray[np.intp], ...], step: tuple[int, int]) -> Mask:

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 
 static int32_t root_of(int32_t *parent, int32_t at) {
     while (parent[at] != at) at = parent[at] = parent[parent[at]];
@@ -17,6 +16,18 @@ static int32_t joined(int32_t *parent, int32_t one, int32_t other) {
     other = root_of(parent, other);
     if (one < other) return parent[other] = one;
     return parent[one] = other;
+}
+
+/* Which neighbours have the same number; see `links_of`. */
+void of_one(int height, int width, const int32_t *ids, uint8_t *restrict down,
+            uint8_t *restrict right) {
+    for (int row = 0; row < height; ++row) {
+        const int32_t *own = ids + (size_t)row * width, *below = own + width;
+        uint8_t *under = down + (size_t)row * width, *beside = right + (size_t)row * (width - 1);
+        if (row < height - 1)
+            for (int n = 0; n < width; ++n) under[n] = (own[n] == below[n]) & (own[n] > 0);
+        for (int n = 0; n < width - 1; ++n) beside[n] = (own[n] == own[n + 1]) & (own[n] > 0);
+    }
 }
 
 /* Numbers of the pieces that linked pixels make, by their first pixels; see `connected`.
@@ -201,38 +212,44 @@ static double quantile(float *values, int count, double share) {
 
 /* Quantiles of values by number; see `ends_by_number`.
  *
- * numbers: (n), 0 for what is left out; values: (n, axes); found: (shares, count, axes), changed
+ * numbers: (n), 0 for what is left out; values: (axes, n); found: (shares, count, axes), changed
  * where there are values of a number. NaN counts as none. */
 int quantiles(int pixels, const int32_t *numbers, int axes, const float *values, int count,
               int shares, const double *share, double *found) {
-    int *begins = calloc((size_t)count + 1, sizeof(int));
-    float *sorted = malloc(sizeof(float) * (pixels ? pixels : 1));
-    if (!begins || !sorted) {
+    int *begins = calloc((size_t)count + 1, sizeof(int)), numbered = 0;
+    for (int n = 0; n < pixels; ++n) numbered += numbers[n] != 0;
+    int *order = malloc(sizeof(int) * (numbered ? numbered : 1));
+    float *own = malloc(sizeof(float) * (numbered ? numbered : 1));
+    if (!begins || !order || !own) {
         free(begins);
-        free(sorted);
+        free(order);
+        free(own);
         return -1;
     }
+    for (int n = 0; n < pixels; ++n)
+        if (numbers[n]) ++begins[numbers[n]];
+    for (int number = 0, sum = 0; number <= count; ++number) {
+        const int many = number && number < count ? begins[number] : 0;
+        begins[number] = sum;
+        sum += many;
+    }
+    for (int n = 0; n < pixels; ++n)
+        if (numbers[n]) order[begins[numbers[n]]++] = n;
+    /* Now each begins where the one before it did: what was its begin is its end. */
     for (int axis = 0; axis < axes; ++axis) {
-        memset(begins, 0, sizeof(int) * ((size_t)count + 1));
-        for (int n = 0; n < pixels; ++n)
-            if (numbers[n] && !isnan(values[axes * n + axis])) ++begins[numbers[n]];
-        for (int number = 1, sum = 0; number <= count; ++number) {
-            const int own = number < count ? begins[number] : 0;
-            begins[number] = sum;
-            sum += own;
-        }
-        for (int n = 0; n < pixels; ++n)
-            if (numbers[n] && !isnan(values[axes * n + axis]))
-                sorted[begins[numbers[n]]++] = values[axes * n + axis];
+        const float *mine = values + (size_t)axis * pixels;
         for (int number = 1, begin = 0; number < count; ++number) {
-            const int end = begins[number];
-            for (int k = 0; end > begin && k < shares; ++k)
+            int known = 0;
+            for (int n = begin; n < begins[number]; ++n)
+                if (!isnan(mine[order[n]])) own[known++] = mine[order[n]];
+            for (int k = 0; known && k < shares; ++k)
                 found[((size_t)k * count + number) * axes + axis] =
-                    quantile(sorted + begin, end - begin, share[k]);
-            begin = end;
+                    quantile(own, known, share[k]);
+            begin = begins[number];
         }
     }
     free(begins);
-    free(sorted);
+    free(order);
+    free(own);
     return 0;
 }

@@ -208,7 +208,7 @@ def ends_by_number(
     library = written(_FILE)
     if library is None:
         return ends_by_numpy(numbers, values, count, percent)
-    own = [np.ascontiguousarray(numbers, np.int32), np.ascontiguousarray(values, np.float32)]
+    own = [np.ascontiguousarray(numbers, np.int32), np.ascontiguousarray(values.T, np.float32)]
     found, shares = np.full((2, count, values.shape[1]), np.nan), np.array(percent) / 100.0
     failed = library.quantiles(
         len(numbers), address(own[0]), values.shape[1], address(own[1]), count, len(shares),
@@ -237,8 +237,23 @@ def ends_by_numpy(
 
 def links_of(ids: Ids) -> list[Mask]:
     """Which neighbours have the same number, other than 0, by axis: (h - 1, w), (h, w - 1)."""
-    pairs = [(ids[low], ids[high]) for low, high in map(sides, (0, 1))]
-    return [(first == second) & (first > 0) for first, second in pairs]
+    library = written(_FILE)
+    if library is None:
+        pairs = [(ids[low], ids[high]) for low, high in map(sides, (0, 1))]
+        return [(first == second) & (first > 0) for first, second in pairs]
+    links = no_links(*ids.shape)
+    library.of_one(*ids.shape, address(np.ascontiguousarray(ids, np.int32)), *map(address, links))
+    return links
+
+
+def no_links(height: int, width: int) -> list[Mask]:
+    """Room for which neighbours are linked, by axis."""
+    return [np.empty((height - 1, width), bool), np.empty((height, width - 1), bool)]
+
+
+def planes(image: Array) -> Array:
+    """The channels of an image one after another, (h, w, channels) -> (channels, h, w)."""
+    return np.ascontiguousarray(image.transpose(2, 0, 1), np.float32)
 
 
 def sides(axis: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:

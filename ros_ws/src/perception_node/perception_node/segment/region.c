@@ -2,24 +2,29 @@
  *
  * What region.py says, pixel by pixel.
  */
+#include <stddef.h>
 #include <stdint.h>
 
 /* Points of pixels, and whether they are in a box; see `points_by_numpy`. Images by rows.
  *
- * across: what a column adds to a pixel's ray, (w, 3); down: what a row adds, (h, 3); low, high:
- * corners of the box, which is open below, (3). */
+ * across: what a column adds to a pixel's ray, (3, w); down: what a row adds, (h, 3); low, high:
+ * corners of the box, which is open below, (3); found: (3, h, w). */
 void points(int height, int width, const float *depth, const float *across, const float *down,
-            const float *origin, const double *low, const double *high, float *found,
+            const float *origin, const float *low, const float *high, float *found,
             uint8_t *inside) {
-    for (int row = 0; row < height; ++row)
-        for (int column = 0; column < width; ++column) {
-            const int at = row * width + column;
-            float *point = found + 3 * at;
-            for (int i = 0; i < 3; ++i) {
-                const float ray = down[3 * row + i] + across[3 * column + i];
-                point[i] = ray * depth[at] + origin[i];
-            }
-            inside[at] = (point[2] < high[2]) & (point[0] > low[0]) & (point[0] < high[0]) &
-                         (point[1] > low[1]) & (point[1] < high[1]);
+    const size_t size = (size_t)height * width;
+    for (int row = 0; row < height; ++row) {
+        const float *far = depth + (size_t)row * width;
+        float *x = found + (size_t)row * width, *y = x + size, *z = y + size;
+        for (int i = 0; i < 3; ++i) {
+            float *restrict out = x + i * size;
+            const float *beside = across + (size_t)i * width;
+            const float below = down[3 * row + i], from = origin[i];
+            for (int n = 0; n < width; ++n) out[n] = (below + beside[n]) * far[n] + from;
         }
+        uint8_t *restrict in = inside + (size_t)row * width;
+        for (int n = 0; n < width; ++n)
+            in[n] = (z[n] < high[2]) & (x[n] > low[0]) & (x[n] < high[0]) & (y[n] > low[1]) &
+                    (y[n] < high[1]);
+    }
 }

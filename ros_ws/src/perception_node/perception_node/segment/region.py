@@ -84,16 +84,22 @@ def _points(camera: PinholeCamera, depth: Array, box: Box, volume: Volume) -> tu
     if library is None:
         return points_by_numpy(camera, depth, box, volume)
     across, down = camera.rays_apart(box)
-    points, inside = np.empty((*depth.shape, 3), np.float32), np.empty(depth.shape, bool)
+    points, inside = np.empty((3, *depth.shape), np.float32), np.empty(depth.shape, bool)
     origin = camera.position_world.astype(np.float32)
-    arrays = (depth, across, down, origin, volume.low, volume.high, points, inside)
-    library.points(
-        *depth.shape,
-        *map(address, map(np.ascontiguousarray, arrays[:-2])),
-        address(points),
-        address(inside),
-    )
-    return points, inside
+    arrays = (depth, across.T, down, origin, *_between(volume), points, inside)
+    library.points(*depth.shape, *map(address, map(np.ascontiguousarray, arrays)))
+    return points.transpose(1, 2, 0), inside
+
+
+def _between(volume: Volume) -> tuple[Array, Array]:
+    """The numbers of 32 bits that are next to a volume's corners: above those and below these.
+
+    A number of 32 bits is less than one of 64, or greater, where it is than these.
+    """
+    low, high = volume.low.astype(np.float32), volume.high.astype(np.float32)
+    low = np.where(low > volume.low, np.nextafter(low, np.float32(-np.inf)), low)
+    high = np.where(high < volume.high, np.nextafter(high, np.float32(np.inf)), high)
+    return low, high
 
 
 def points_by_numpy(

@@ -8,6 +8,7 @@ large for a block, or hangs on something that is, is none: the arm, a hand, a wa
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -22,15 +23,16 @@ from perception_node.masks import pixels_of
 from perception_node.observation import Observation
 
 from .facets import (
-    LEAK,
     Facets,
     Look,
     alike,
     find_facets,
+    links_in,
+    on_one_facet,
     sums,
-    without_leaks,
 )
-from .pieces import ends_by_number
+from .leaks import LEAK, without_leaks
+from .pieces import ends_by_number, planes
 from .region import Region, look_at
 from .segments import Segments
 from .strips import SAME_HEIGHT, take_strips
@@ -111,8 +113,10 @@ def find_in_rgbd(
     if region is not None:
         look = Look.of(region.rgb, observation.noise)
         known = None if labelled is None else labelled[region.box]
-        check_all_seen(region, look, labels.size, known)
-        labels[region.box] = _labels(region, look, volume, smear_of(observation.rgb.shape[1]))
+        links = on_one_facet(look, region.depth)
+        check_all_seen(region, look, links, labels.size, known)
+        smear = smear_of(observation.rgb.shape[1])
+        labels[region.box] = _labels(region, look, links, volume, smear)
     return Segments.from_labels(labels, source="camera/depth/image_raw")
 
 
@@ -144,7 +148,9 @@ class _Table:
     level: Mask
 
 
-def _labels(region: Region, look: Look, volume: Volume, smear: int) -> NDArray[np.uint16]:
+def _labels(
+    region: Region, look: Look, links: Sequence[Mask], volume: Volume, smear: int
+) -> NDArray[np.uint16]:
     """Labels of the blocks, 0 for all else, shape (h, w) of the region."""
     labels = np.zeros(region.depth.shape, np.uint16)
     with np.errstate(invalid="ignore"):
@@ -156,7 +162,7 @@ def _labels(region: Region, look: Look, volume: Volume, smear: int) -> NDArray[n
     lower, right = np.minimum((top + height + 1, left + width + 1), labels.shape).tolist()
     box = np.s_[max(0, top - 1) : lower, max(0, left - 1) : right]
     part, reach = region.part(box), STRIP * smear
-    pieces = find_facets(candidates[box], look.part(box), part.depth)
+    pieces = find_facets(candidates[box], links_in(links, box))
     facets = without_leaks(pieces, part.points[..., 2], reach)
     table = _measure(facets, look.part(box), part, smear, reach)
     groups = _group(facets, table)
@@ -228,8 +234,8 @@ def _measure(facets: Facets, look: Look, region: Region, smear: int, strip: int)
     return _Table(
         found.pixels,
         found.sure,
-        _thick(facets, smear),
-        _thick(facets, 2 * strip),
+        facets.thick(smear),
+        facets.thick(2 * strip),
         found.colors[:, :3],
         found.colors[:, 3],
         centre,
@@ -238,15 +244,6 @@ def _measure(facets: Facets, look: Look, region: Region, smear: int, strip: int)
         normal,
         level & wide,
     )
-
-
-def _thick(facets: Facets, width: int) -> Mask:
-    """Whether facets are anywhere wider and higher than so many pixels, shape (F,)."""
-    ids, around = facets.ids.astype(np.float32), np.ones((width + 1,) * 2, np.uint8)
-    core = (cv2.erode(ids, around) == ids) & (cv2.dilate(ids, around) == ids)
-    thick = np.zeros(facets.count + 1, bool)
-    thick[facets.ids[core]] = True
-    return thick
 
 
 def _group(facets: Facets, table: _Table) -> NDArray[np.intp]:
@@ -321,7 +318,7 @@ def _which_are_blocks(
     pixels = np.bincount(groups[1:], table.pixels[1:], minlength=count)
     some = pixels >= MIN_PIXELS
     group_of = np.where(some, np.arange(count), 0).astype(np.int32)[groups][facets.ids]
-    ends = ends_by_number(group_of.ravel(), points.reshape(-1, 3), count)
+    ends = ends_by_number(group_of.ravel(), planes(points).reshape(3, -1).T, count)
     low, high = (np.where(some[:, None], end, 0.0) for end in ends)
     extent = high - low
     across = np.maximum(extent[:, 0], extent[:, 1])

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Final, Protocol
@@ -42,6 +43,12 @@ class Segment:
     part: Mask
     outline: NDArray[np.float64] | None = None
     over: tuple[float, ...] | None = None
+
+    @functools.cached_property
+    def box(self) -> tuple[int, int, int, int]:
+        """Left, top, width and height of the rectangle around the part [px]."""
+        left, top, width, height = cv2.boundingRect(self.part.view(np.uint8))
+        return left, top, width, height
 
 
 @dataclass(frozen=True)

@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from perception_node.errors import BadImageError
 from perception_node.masks import pixels_of
 
-from .facets import Look, Mask, facet_ids
+from .facets import Look, Mask, counts, mean_look
+from .pieces import connected
 from .region import Region
 
 #: Of a thing that depth shows at least this part of the pixels has a depth.
@@ -27,15 +28,20 @@ SAME_LIGHT: Final = 0.16
 
 
 def check_all_seen(
-    region: Region, look: Look, picture_area: int, labelled: Mask | None = None
+    region: Region,
+    look: Look,
+    links: Sequence[Mask],
+    picture_area: int,
+    labelled: Mask | None = None,
 ) -> None:
     """Raises BadImageError if something that may be a block has no depth.
 
     Args:
+        links: see :func:`on_one_facet`.
         picture_area: of the picture that the region is a part of [px].
         labelled: pixels that are known to be of a block, shape (h, w) of the region.
     """
-    missed = unseen(region, look, picture_area)
+    missed = unseen(region, look, links, picture_area)
     if labelled is not None:
         missed &= ~labelled
         if np.count_nonzero(missed) < MIN_AREA * picture_area:
@@ -50,24 +56,24 @@ def check_all_seen(
         )
 
 
-def unseen(region: Region, look: Look, picture_area: int) -> Mask:
+def unseen(region: Region, look: Look, links: Sequence[Mask], picture_area: int) -> Mask:
     """Pixels of things without depth that can be blocks, shape (h, w) of the region.
 
     What is so far behind the table that it has no depth is not among them: it reaches the region's
     edge or fills a great part of it, or looks like what does.
 
     Args:
+        links: see :func:`on_one_facet`.
         picture_area: of the picture that the region is a part of [px].
     """
     everything, least = np.ones(region.depth.shape, bool), MIN_AREA * picture_area
     unknown, enough = ~np.isfinite(region.depth), (1.0 - MIN_DEPTH_SHARE) * least
     if np.count_nonzero(unknown) <= enough:
         return ~everything
-    ids, count = facet_ids(everything, look, region.depth)
-    without = np.bincount(ids[unknown], minlength=count + 1)
+    count, ids = connected(everything, links)
+    pixels, without = counts(ids, unknown, count)
     if without.max() <= enough:
         return ~everything
-    pixels = np.bincount(ids.ravel(), minlength=count + 1)
     bare = (pixels >= least) & (pixels - without < MIN_DEPTH_SHARE * pixels)
     if not bare.any():
         return ~everything
@@ -78,12 +84,9 @@ def unseen(region: Region, look: Look, picture_area: int) -> Mask:
     if not len(doubtful):
         return ~everything
 
-    def means(facets: NDArray[np.intp]) -> list[tuple[NDArray[np.float32], np.float32]]:
-        masks = (ids == facet for facet in facets)
-        return [(look.chroma[mask].mean(axis=0), look.light[mask].mean()) for mask in masks]
-
-    known = means(np.flatnonzero(behind))
-    for facet, (hue, light) in zip(doubtful, means(doubtful)):
+    known = [mean_look(look, ids, facet) for facet in np.flatnonzero(behind).tolist()]
+    for facet in doubtful.tolist():
+        hue, light = mean_look(look, ids, facet)
         bare[facet] = not any(
             np.linalg.norm(hue - other) < SAME_HUE and abs(light - lit) < SAME_LIGHT
             for other, lit in known

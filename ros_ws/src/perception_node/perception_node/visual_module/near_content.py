@@ -7,11 +7,13 @@ layer is computed where something differs from that only, which grows by its ker
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from tamp_runtime.machine_code import address, written
 from torch import Tensor, nn
 from torch.nn import functional
 
@@ -23,6 +25,7 @@ Array = NDArray[np.float32]
 MOST: Final = 0.4
 #: Squares' sides are multiples of this [px]: torch keeps what it made ready for few sizes.
 STEP: Final = 8
+_FILE: Final = Path(__file__).with_suffix(".c")
 
 
 class NearContent(nn.Module):
@@ -60,10 +63,8 @@ class NearContent(nn.Module):
             extent = min((side - 1 + spread) // stride + 1, outputs)
             begin = np.clip(-((spread - border - start) // stride), 0, outputs - extent)
             inputs = (extent - 1) * stride + spread + 1
-            around = np.empty((len(patch), inputs, inputs, empty.shape[2]), np.float32)
-            for own, (row, column) in zip(around, begin * stride):
-                own[:] = empty[row : row + inputs, column : column + inputs]
-            _paste(around, patch, start + border - begin * stride)
+            first = begin * stride
+            around = _surrounded(patch, empty, first, inputs, start + border - first)
             seen = functional.conv2d(
                 torch.from_numpy(around).permute(0, 3, 1, 2), convolution.weight,
                 convolution.bias, stride, 0, convolution.dilation,
@@ -80,6 +81,34 @@ def _by_pixels(maps: Tensor) -> Array:
     return np.ascontiguousarray(maps.permute(0, 2, 3, 1).numpy())
 
 
+def _surrounded(
+    patch: Array, empty: Array, first: NDArray[np.intp], side: int, at: NDArray[np.intp]
+) -> Array:
+    """Squares with what is around them in an empty image.
+
+    Args:
+        patch: shape (n, s, s, channels).
+        empty: what the image is like without content, shape (height, width, channels).
+        first: where the larger squares begin in it, (row, column), shape (n, 2).
+        side: theirs [px].
+        at: where the patches begin in those, likewise.
+
+    Returns:
+        Shape (n, side, side, channels).
+    """
+    library = written(_FILE)
+    around = np.empty((len(patch), side, side, empty.shape[2]), np.float32)
+    if library is None:
+        for own, (row, column) in zip(around, first):
+            own[:] = empty[row : row + side, column : column + side]
+        _paste(around, patch, at)
+        return around
+    begins = np.concatenate([first, at], axis=1).astype(np.intc)
+    images = map(address, (patch, np.ascontiguousarray(empty), begins, around))
+    library.surrounded(len(patch), patch.shape[1], side, *empty.shape[1:], *images)
+    return around
+
+
 def _paste(whole: Array, parts: Array, start: NDArray[np.intp]) -> None:
     """Puts squares into n maps, from (row, column) on, shape (n, 2)."""
     side = parts.shape[1]
@@ -93,11 +122,26 @@ def _content(images: Array) -> tuple[NDArray[np.intp], int]:
     Returns:
         Where they begin, (row, column), shape (n, 2), and their side [px].
     """
+    library, (height, width) = written(_FILE), images.shape[2:]
+    if library is None:
+        first, last = ends_by_numpy(images)
+    else:
+        found, own = np.empty((2, len(images), 2), np.int64), np.ascontiguousarray(images)
+        library.content(*images.shape, address(own), address(found[0]), address(found[1]))
+        first, last = found
+    side = -(-max(int((last - first).max(initial=1)), 1) // STEP) * STEP
+    return np.clip(first, 0, np.array([height, width]) - side), side
+
+
+def ends_by_numpy(images: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """First row and column of each image that is not zero, and those after the last, (n, 2) each.
+
+    Of an empty image 0 and its sides.
+    """
     used: Any = images.any(axis=1)
     ends = []
     for axis in (2, 1):
         lines: Any = used.any(axis=axis)
         ends.append((lines.argmax(axis=1), lines.shape[1] - lines[:, ::-1].argmax(axis=1)))
     first, last = (np.stack(end, axis=-1) for end in zip(*ends))
-    side = -(-max(int((last - first).max(initial=1)), 1) // STEP) * STEP
-    return np.clip(first, 0, np.array(used.shape[1:]) - side), side
+    return first, last

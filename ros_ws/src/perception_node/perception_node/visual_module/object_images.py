@@ -127,7 +127,7 @@ def object_views(
     crop_sizes, origins = np.zeros((count, 2), np.intp), np.zeros((count, 2))
     sides = np.zeros(count)
     for index, segment in enumerate(segments):
-        left, top, width, height = cv2.boundingRect(segment.part.view(np.uint8))
+        left, top, width, height = segment.box
         side = max(4, round(max(width, height) * size / block))
         step = max(1, side // 4)
         first = tuple(
