@@ -162,7 +162,8 @@ class Discourse(Linking):
         self._put_down()
         if self._mentioned is not None:
             raise unclear(self._mentioned)
-        self._mentioned = item.term
+        if not item.told:
+            self._mentioned = item.term
         self.subjects, self.object, self.link = [item.term], None, None
         if item.term.is_place:
             self.subjects, self.object = [], item.term

@@ -75,9 +75,14 @@ class Relate:
 
 @dataclass(frozen=True)
 class Mention:
-    """A block of which something is said next: "blue first, red on that"."""
+    """A block of which something is said next: "blue first, red on that".
+
+    Attributes:
+        told: something was said already that is no matter of the goal.
+    """
 
     term: Term
+    told: bool = False
 
 
 @hashed_once

@@ -238,11 +238,20 @@ def _another(w: Word) -> Term:
     return term_of(words_of(w, text="block"), Kind.COUNT)
 
 
-def _not_colored(
-    a: Word, n: tuple[Words, bool] | None = None, w: Word | None = None
+def _all_not(
+    m: tuple[Words, bool], n: tuple[Words, bool] | None = None, w: Word | None = None
 ) -> Term | None:
-    words = n[0] if n else words_of(w, text="block")
-    return term_of(words, Kind.EVERY, but=(term_of(words_of(a), Kind.EVERY),))
+    """ "every block that is not red", "all non-boxes"."""
+    if n is None and w is None and not m[1]:
+        return None  # "non box"
+    words = (
+        n[0]
+        if n
+        else Words("block", m[0].offset, m[0].end)
+        if w is None
+        else words_of(w, text="block")
+    )
+    return term_of(words, Kind.EVERY, but=(term_of(m[0], Kind.EVERY),))
 
 
 def _it(w: Word) -> Term:

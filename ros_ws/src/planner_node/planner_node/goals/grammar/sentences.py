@@ -120,6 +120,11 @@ def _mention(b: Term) -> tuple[Item, ...]:
     return (Mention(b),)
 
 
+def _told(b: Term) -> tuple[Item, ...]:
+    """ "red is lonely, so put blue next to it"."""
+    return (Mention(b, told=True),)
+
+
 #: An item, and how it is joined to what stands in front of it.
 Joined = tuple[str, tuple[Item, ...]]
 
@@ -176,6 +181,17 @@ def _overlap(one: Relate, other: Item) -> bool:
         for each in (one, other)
     ]
     return bool(subjects[0] & subjects[1] or objects[0] & objects[1])
+
+
+def _recounted(i: tuple[Item, ...], q: tuple[int, int | None]) -> tuple[Joined, ...] | None:
+    """ "three blocks in stack 1, no, make it two"."""
+    if len(i) != 1 or not isinstance(i[0], Relate) or i[0].subject is None:
+        return None
+    terms = i[0].subject.terms
+    if len(terms) != 1 or terms[0].kind is not Kind.COUNT or terms[0].among:
+        return None
+    number = replace(terms[0], least=q[0], most=q[1])
+    return (("", (replace(i[0], subject=replace(i[0].subject, terms=(number,))),)),)
 
 
 def _rather_than(i: tuple[Item, ...]) -> tuple[Joined, ...] | None:

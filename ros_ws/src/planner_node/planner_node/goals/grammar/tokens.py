@@ -135,6 +135,6 @@ def _words(word: str) -> list[str]:
         behind = one in _HUES and other in _GLUED | _NOUNS
         if behind or (one in _GLUED and other in _HUES) or (one, other) == ("put", "the"):
             return [one, other]
-    if "-" in word and word.partition("-")[0] in _HUES:
-        return word.split("-")  # "red-colored"
+    if "-" in word and word.partition("-")[0] in _HUES | {"non"}:
+        return word.split("-")  # "red-colored", "non-red"
     return [word]
