@@ -39,6 +39,8 @@ class Claims:
         #: A name of which nothing is said yet.
         self._mentioned: Term | None = None
         self._sides = False
+        #: The last two that were said to be in one place.
+        self._pair: list[Term] = []
         #: Who stands at the bottom of a tower of which it is not yet said where it is.
         self._foot: Term | None = None
         self._footed: Term | None = None
@@ -162,6 +164,8 @@ class Claims:
     def _only(
         self, subjects: Sequence[Term], phrase: Phrase, denied: bool, object_: Term, one: Term
     ) -> None:
+        if phrase == UPON and not object_.is_place and len(subjects) == 1 and not denied:
+            return  # "nothing but red on blue": nothing else can be
         found = none_but(subjects, phrase, denied, object_)
         if found is None:
             raise unclear(one)

@@ -133,7 +133,7 @@ def lattice_of(tokens: Sequence[Token], literals: Collection[str]) -> Lattice:
             }
             if token.text in ("in", "at", "to"):
                 spoken.discard("RELATION")
-            if spoken <= _CHAT:
+            if spoken <= _CHAT and (len(token.text) > 1 or spoken - {"UNKNOWN", "REASONWORD"}):
                 here["CHATWORD"] = [(start + 1, itself, 0.0)]
         found.append(here)
         fillers.append(skips)

@@ -49,6 +49,11 @@ def _colored(a: Word, h: tuple[Word, bool]) -> tuple[Words, bool]:
     return words_of(*sorted((a, h[0]), key=lambda word: word.offset)), h[1]
 
 
+def _shaped(s: Word, a: Word | None = None) -> tuple[Words, bool]:
+    """ "the spherical one"."""
+    return words_of(a, s), False
+
+
 def _doubly(a: Word, b: Word, h: Word) -> tuple[Words, bool]:
     return words_of(a, b, h), False
 
@@ -197,8 +202,11 @@ def _all_but(t: Term, who: Names) -> Term | None:
 
 
 def _all(
-    n: tuple[Words, bool] | None = None, w: Word | None = None, p: Term | None = None
-) -> Term | None:
+    n: tuple[Words, bool] | None = None, w: Word | None = None, p: Term | None = None,
+    o: tuple[Words, bool] | None = None,
+) -> Term | None:  # fmt: skip
+    if o is not None:
+        return _none(o)
     if p is not None:
         return p
     if w is not None:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..terms import Kind, Term
+from .clausal import but
 from .lattice import Word
 from .lexicon import BAD
 from .meaning import Again, Change, Item, Link, Mention, Names, Relate, Row, Take
@@ -51,6 +52,16 @@ def _respectively(s: Names, w: Word, o: Names) -> tuple[Item, ...] | None:
         Relate(Names((one,)), (Link(words_of(w), w.phrase, Names((other,))),))
         for one, other in pairs
     )
+
+
+def _but_those(
+    s: Names, m: tuple[Link, ...], e: Names, to: tuple[Link, ...]
+) -> tuple[Item, ...] | None:
+    """ "all in stack 0 except red, which goes to stack 1"."""
+    names = but(s, e)
+    if names is None or s.terms[0].kind is not Kind.EVERY:
+        return None
+    return relate(names, m), relate(e, to)  # type: ignore[return-value]
 
 
 def _again_but(n: Names, to: tuple[Link, ...]) -> tuple[Item, ...]:
