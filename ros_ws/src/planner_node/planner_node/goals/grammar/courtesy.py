@@ -17,7 +17,7 @@ def courtesies(words: Sequence[str], start: int) -> Iterator[int]:
     What is no trouble may be denied, what is possible may not: "if it is not possible" is a
     condition.
     """
-    if words[start] != "if":
+    if words[start] not in ("if", "when", "whenever"):
         return
     denied = said = False
     for at in range(start + 1, len(words)):

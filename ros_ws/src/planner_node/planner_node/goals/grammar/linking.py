@@ -118,6 +118,8 @@ class Linking(Anaphora):
                 if denied:
                     raise unclear_words(written)
                 self._add(subjects, _BESIDE, False, written, one)
+        if len(subjects) == 2 and phrase == INSIDE and not denied:
+            self._pair = subjects
         if self._footed is not None and objects[-1].is_place and not denied:
             self._add([self._footed], UPON, False, written, objects[-1])
             self._footed = None

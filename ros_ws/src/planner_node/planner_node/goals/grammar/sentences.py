@@ -5,7 +5,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from scene_graph import LEFT
+
 from ..terms import Kind, Term
+from .claims import key_of
 from .clausal import but
 from .lattice import Word
 from .lexicon import BAD
@@ -36,6 +39,11 @@ def _under(c: Item, f: bool = False) -> Item | None:
 
 
 # What says nothing
+
+
+def _spread(c: Row) -> Row | None:
+    """ "from left to right: red, blue, each in its own stack"."""
+    return c if c.predicate == LEFT else None
 
 
 def _again(n: Names) -> Again | None:
@@ -146,7 +154,7 @@ def _last(i: tuple[Item, ...]) -> tuple[Joined, ...]:
 
 def _aside_word(w: Word) -> Word | None:
     """What names something else, not what says that it is, or is not, so."""
-    return None if w.text in BAD or w.text.endswith(_TELLING) else w
+    return None if w.text in BAD or w.text.endswith(_TELLING) or len(w.text) == 1 else w
 
 
 def _beside_aside(r: tuple[Joined, ...] = (), i: tuple[Item, ...] = ()) -> tuple[Joined, ...]:
@@ -203,6 +211,23 @@ def _recounted(i: tuple[Item, ...], q: tuple[int, int | None]) -> tuple[Joined, 
         return None
     number = replace(terms[0], least=q[0], most=q[1])
     return (("", (replace(i[0], subject=replace(i[0].subject, terms=(number,))),)),)
+
+
+def _not_that(i: tuple[Item, ...], b: Term, c: Term) -> tuple[Joined, ...] | None:
+    """ "put green in stack 1, no, not the green one, the blue one"."""
+    if len(i) != 1 or not isinstance(i[0], Relate) or i[0].subject is None:
+        return None
+
+    def corrected(names: Names) -> Names:
+        terms = (c if key_of(term) == key_of(b) else term for term in names.terms)
+        return replace(names, terms=tuple(terms))
+
+    links = tuple(
+        link if link.names is None else replace(link, names=corrected(link.names))
+        for link in i[0].links
+    )
+    told = replace(i[0], subject=corrected(i[0].subject), links=links)
+    return (("", (told,)),) if told != i[0] else None
 
 
 def _rather_than(i: tuple[Item, ...]) -> tuple[Joined, ...] | None:
