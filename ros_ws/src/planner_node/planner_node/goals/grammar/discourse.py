@@ -75,7 +75,10 @@ class Discourse(Linking):
         self._check_now()
         if self._sides:
             for said in self.relations:
-                if isinstance(said, ParsedRelation) and said.phrase.predicate.name in (LEFT, BESIDE):
+                if isinstance(said, ParsedRelation) and said.phrase.predicate.name in (
+                    LEFT,
+                    BESIDE,
+                ):
                     raise unclear(said.subject)  # on the left of all, or of something?
         return tuple(dict.fromkeys(self.relations))
 

@@ -14,7 +14,7 @@ from .lattice import Word
 from .lexicon import BAD
 from .meaning import Again, Change, Item, Link, Mention, Names, Relate, Row, Take
 from .nominal import UPON, words_of
-from .verbal import Verb, relate
+from .verbal import Verb, asked, relate
 
 #: Ends of words that tell how something is, or was.
 _TELLING = ("ed", "en", "ly", "less", "ing", "ful")
@@ -63,13 +63,15 @@ def _respectively(s: Names, w: Word, o: Names) -> tuple[Item, ...] | None:
 
 
 def _but_those(
-    s: Names, m: tuple[Link, ...], e: Names, to: tuple[Link, ...]
+    s: Names, m: tuple[Link, ...], e: Names, to: tuple[Link, ...], v: Verb, u: Verb | None = None
 ) -> tuple[Item, ...] | None:
     """ "all in stack 0 except red, which goes to stack 1"."""
     names = but(s, e)
     if names is None or s.terms[0].kind is not Kind.EVERY:
         return None
-    return relate(names, m), relate(e, to)  # type: ignore[return-value]
+    said = relate(names, m, u), relate(e, to, v)
+    wished = asked(u, names, False) and asked(v, e, False)
+    return said if wished and None not in said else None  # type: ignore[return-value]
 
 
 def _again_but(n: Names, to: tuple[Link, ...]) -> tuple[Item, ...]:
