@@ -47,7 +47,8 @@ _SHORT: Final = {
     "th": "the", "thats it": "that is it", "y'all": "you", "d'you": "do you", "atleast": "at least",
     "alot": "a lot", "infront": "in front", "upside-down": "upside down", "nr": "number",
     "der": "the", "die": "the", "das": "the", "upto": "up to", "pt": "put", "topof": "top of",
-    "whats": "what is", "nonempty": "not empty", "itll": "it will", "hes": "he is", "whos": "who is",
+    "whats": "what is", "itll": "it will", "hes": "he is", "whos": "who is",
+    "nonempty": "not empty",
 }  # fmt: skip
 _TAILS: Final = {"d": "would", "ll": "will", "re": "are", "ve": "have", "m": "am", "s": "is"}
 #: Words that are written together with the one beside them: "redon blue", "putthe red".
