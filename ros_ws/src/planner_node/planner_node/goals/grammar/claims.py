@@ -164,8 +164,6 @@ class Claims:
     def _only(
         self, subjects: Sequence[Term], phrase: Phrase, denied: bool, object_: Term, one: Term
     ) -> None:
-        if phrase == UPON and not object_.is_place and len(subjects) == 1 and not denied:
-            return  # "nothing but red on blue": nothing else can be
         found = none_but(subjects, phrase, denied, object_)
         if found is None:
             raise unclear(one)
