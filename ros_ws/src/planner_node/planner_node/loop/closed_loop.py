@@ -90,6 +90,11 @@ class ClosedLoop:
         self._answers = Answers(answer, scenes.answer, self._look_again, self._possible.plan)
         self._requested = scenes.now()
 
+    @property
+    def outcome(self) -> Outcome:
+        """What is noted so far; it can be given even after a defect."""
+        return self._record.outcome
+
     def run(self, read: Callable[[], ResolveGoal], given: str = "") -> Outcome:
         """Works until the goal is confirmed or cannot be reached; every end is an outcome.
 
