@@ -39,6 +39,7 @@ def mended(word: str, known: frozenset[str]) -> tuple[str, ...]:
             (len(other) > 3 or other in COLORS)
             and len(word) > 2
             and word[0] == other[0]
+            and (len(other) >= len(word) or other in COLORS)
             and _vowelless(word) == _vowelless(other)
         ):
             near.setdefault(0.8, set()).add(other)

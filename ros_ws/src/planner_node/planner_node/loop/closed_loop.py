@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
-from tamp_runtime.motion_report import MotionReport, MotionState
+from tamp_runtime.motion_report import MotionState
 
 from scene_graph import format_stacks
 
@@ -37,6 +35,7 @@ from .plan_run import PlanRun
 from .plan_watch import PlanWatch
 from .possible_moves import PossibleMoves
 from .recall import recall
+from .record import Record
 from .report import Outcome, Progress, Stage, Status
 from .scene import Scene
 from .scene_plan import decided, meaning
@@ -48,11 +47,7 @@ _UNSEEN = (NoSceneGraphError, NotConfidentError, ObjectLostError)
 
 
 class ClosedLoop:
-    """One run of achieve_goal.
-
-    Attributes:
-        outcome: kept up to date as the run goes on, so that it can be given even after a defect.
-    """
+    """One run of achieve_goal."""
 
     def __init__(
         self,
@@ -81,11 +76,12 @@ class ClosedLoop:
         self._conflict = conflict
         self._clock = clock or Clock()
         self._teller = Teller(report, self._clock)
+        self._record = Record(self._clock)
         self._arm = ArmHome(
-            settings, motion, self._teller.say, self._because, self._check, self._stopped
+            settings, motion, self._teller.say, self._record.because, self._check, self._stopped
         )
         self._runs = PlanRun(
-            *(settings, motion, self._teller, self._because),
+            *(settings, motion, self._teller, self._record.because),
             *(cancelled, conflict, self._stopped, shut_down),
             newest=lambda: scenes.newest,
         )
@@ -93,7 +89,11 @@ class ClosedLoop:
         self._possible = PossibleMoves(settings, cancelled)
         self._answers = Answers(answer, scenes.answer, self._look_again, self._possible.plan)
         self._requested = scenes.now()
-        self.outcome = Outcome()
+
+    @property
+    def outcome(self) -> Outcome:
+        """What is noted so far; it can be given even after a defect."""
+        return self._record.outcome
 
     def run(self, read: Callable[[], ResolveGoal], given: str = "") -> Outcome:
         """Works until the goal is confirmed or cannot be reached; every end is an outcome.
@@ -107,35 +107,35 @@ class ClosedLoop:
             status, message = self._achieve(read)
             if conflict := self._conflict():
                 raise ConflictError(conflict)
-            self._note(status=status, message=message)
+            self._record.note(status=status, message=message)
         except PlannerError as error:
             if isinstance(error, MotionSilentError):
                 self._glance()
             if isinstance(error, NeedsAnswerError):
-                self._note(answers=error.doubt.colors)
+                self._record.note(answers=error.doubt.colors)
             told = isinstance(error, CancelledError | TooManyReplansError)
-            if not told and str(error) not in self.outcome.causes:
-                self._because(str(error))
+            if not told and str(error) not in self._record.outcome.causes:
+                self._record.because(str(error))
             self.give_up(Status[error.status], str(error), error.module)
-        self._note(motion=self._motion.last_on(self.outcome.motion))
-        return self.outcome
+        self._record.note(motion=self._motion.last_on(self._record.outcome.motion))
+        return self._record.outcome
 
     def give_up(self, status: Status, message: str, module: str) -> Outcome:
         """The outcome of a run that failed; its message tells what state it leaves."""
         motion = self._motion
-        self._note(motion=motion.last_on(self.outcome.motion))
+        self._record.note(motion=motion.last_on(self._record.outcome.motion))
         # A goal that makes no sense leaves nothing behind that its sentence had to tell.
-        if self.outcome.moves_planned or (module != "planner" and motion.knows_arm):
-            message = account_for(message, self.outcome, motion.newest, motion.silence)
-        self._note(status=status, message=message, module=module)
-        return self.outcome
+        if self._record.outcome.moves_planned or (module != "planner" and motion.knows_arm):
+            message = account_for(message, self._record.outcome, motion.newest, motion.silence)
+        self._record.note(status=status, message=message, module=module)
+        return self._record.outcome
 
     def _achieve(self, read: Callable[[], ResolveGoal]) -> tuple[Status, str]:
         self._tell(Stage.PERCEIVING, "reading the goal")
-        with self._timed("perceive_seconds"):
+        with self._record.timed("perceive_seconds"):
             resolve = read()
         scene = self._look(Stage.PERCEIVING, "waiting for a confident scene graph")
-        self._note(initial=scene)
+        self._record.note(initial=scene)
         scene, goal = self._uncovered(scene, resolve)
         plans = 0
         while scene.aside or not goal.holds(scene.stacks):
@@ -148,17 +148,17 @@ class ClosedLoop:
                 if not self._possible.forget_once():
                     self._add_what_helps(error)
                     raise
-                self._because(str(error))
+                self._record.because(str(error))
                 scene = self._look(Stage.PERCEIVING, "looking again", goal.names)
                 continue
             if not plans:
-                self._note(moves_planned=self.outcome.moves_planned + len(found.moves))
+                self._record.planned(len(found.moves))
             plans += 1
             scene = self._work_off(scene, goal, found)
             if scene.hidden:
                 scene, goal = self._uncovered(scene, resolve)
         seen = format_stacks(scene.stacks)
-        if not plans and not self.outcome.moves_planned:
+        if not plans and not self._record.outcome.moves_planned:
             return Status.ALREADY_TRUE, f"nothing to do: '{goal}' holds in {seen}"
         told = "".join(f"; {sentence}" for sentence in dict.fromkeys(self._remarks))
         return Status.SUCCESS, f"the camera confirms '{goal}': {seen}{told}"
@@ -186,13 +186,13 @@ class ClosedLoop:
             self._tell(
                 Stage.PLANNING, f"searching what to move aside in {format_stacks(scene.stacks)}"
             )
-            with self._timed("plan_seconds"):
+            with self._record.timed("plan_seconds"):
                 found = self._possible.uncover(scene, goal)
             self._tell(Stage.PLANNING, found.note)
             if not attempts:
                 moves = "1 move was" if len(found.moves) == 1 else f"{len(found.moves)} moves were"
                 self._remarks.append(f"{moves} made to see what stands behind others")
-                self._note(moves_planned=self.outcome.moves_planned + len(found.moves))
+                self._record.planned(len(found.moves))
             attempts += 1
             plan = plan_for(scene, goal or Goal(()), found, self._scenes.now())
             scene = self._carry_out(plan, plan.goal)
@@ -214,18 +214,18 @@ class ClosedLoop:
         same, and if not, the answer tells what was seen last.
         """
         self._check()
-        before = len(self.outcome.causes)
+        before = len(self._record.outcome.causes)
         watch = self._watch_over(plan)
         started = self._clock.now()
         try:
             end = self._runs.carry_out(plan, watch)
         finally:
-            self._add_up(self._teller.progress.motion, self._clock.now() - started)
+            self._record.carried_out(self._teller.progress.motion, self._clock.now() - started)
         if refused := self._possible.refused(plan, end.report):
-            self._because(f"{refused}; another way is planned")
+            self._record.because(f"{refused}; another way is planned")
             return plan.scene
         failure = self._runs.judge(end)
-        reason = "; ".join(self.outcome.causes[before:])
+        reason = "; ".join(self._record.outcome.causes[before:])
         try:
             message = reason or "looking whether the goal is reached"
             scene = self._look(
@@ -238,7 +238,7 @@ class ClosedLoop:
         except _UNSEEN as error:
             if failure is None:
                 raise
-            self._because(str(error))
+            self._record.because(str(error))
             raise failure from error
         if watch is not None and end.report.state == MotionState.SUCCEEDED:
             self._remarks += watch.told_of_moved
@@ -247,7 +247,7 @@ class ClosedLoop:
             if watch.is_as_predicted(scene, end.report.moves_done):
                 self._patience *= 2
         if difference := describe_difference(plan, end.report, scene):
-            self._because(difference)
+            self._record.because(difference)
         silence = end.silence
         if silence is not None and not silence.taken_up and scene.stacks == plan.scene.stacks:
             failure = silence
@@ -272,7 +272,7 @@ class ClosedLoop:
         Blocks that others hide are put in by ``recall``.
         """
         self._tell(stage, message)
-        with self._timed("perceive_seconds"):
+        with self._record.timed("perceive_seconds"):
             self._arm.settle(moved)
             self._check()
             if self._teller.progress.message != message:
@@ -287,7 +287,7 @@ class ClosedLoop:
                 if clause := in_the_view(self._motion.newest):
                     error.args = (f"{error}; {clause}",)
                 raise
-        self._note(final=scene)
+        self._record.note(final=scene)
         return scene
 
     def _look_again(self) -> Scene:
@@ -296,24 +296,24 @@ class ClosedLoop:
     def _glance(self) -> None:
         """Notes the newest scene, if there is one, where nobody can be waited for any more."""
         try:
-            self._note(final=self._scenes.latest(self._requested))
+            self._record.note(final=self._scenes.latest(self._requested))
         except PlannerError:
             return
 
     def _count_replan(self, scene: Scene) -> None:
-        replans = self.outcome.replans
+        replans = self._record.outcome.replans
         if replans >= self._settings.max_replans:
             raise TooManyReplansError(
                 f"gave up after {replans} replans; the camera last saw "
                 f"{format_stacks(scene.stacks)}",
                 replans,
             )
-        self._note(replans=replans + 1)
+        self._record.note(replans=replans + 1)
         self._teller.progress = replace(self._teller.progress, replans=replans + 1)
 
     def _plan(self, scene: Scene, goal: Goal) -> SearchResult:
         self._tell(Stage.PLANNING, f"searching from {format_stacks(scene.stacks)} to '{goal}'")
-        with self._timed("plan_seconds"):
+        with self._record.timed("plan_seconds"):
             found = self._possible.plan(scene, goal)
         for sentence in besides(scene):
             self._tell(Stage.PLANNING, f"{sentence}; it is fetched")
@@ -322,17 +322,6 @@ class ClosedLoop:
             self._tell(Stage.PLANNING, found.note)
             self._remarks.append(f"the plan was {found.note}")
         return found
-
-    def _add_up(self, last: MotionReport, elapsed: float) -> None:
-        """Notes what became of a plan; ``elapsed`` [s] is motion optimisation and execution."""
-        outcome = self.outcome
-        execution = max(0.0, elapsed - last.optimisation_seconds)
-        self._note(
-            motion=last,
-            moves_executed=outcome.moves_executed + last.moves_done,
-            motion_seconds=outcome.motion_seconds + last.optimisation_seconds,
-            execute_seconds=outcome.execute_seconds + execution,
-        )
 
     def _check(self) -> None:
         """Raises CancelledError or ConflictError if the run is to end."""
@@ -346,22 +335,5 @@ class ClosedLoop:
         self._teller.beat()
         return self._cancelled() or bool(self._conflict())
 
-    def _because(self, cause: str) -> None:
-        """Notes why a plan was given up, failed or is made anew."""
-        self._note(causes=(*self.outcome.causes, cause))
-
     def _tell(self, stage: Stage, message: str) -> None:
         self._teller.tell(stage, message)
-
-    def _note(self, **changes: Any) -> None:
-        self.outcome = replace(self.outcome, **changes)
-
-    @contextmanager
-    def _timed(self, field: str) -> Iterator[None]:
-        """Adds the wall time that passes inside to a field of the outcome."""
-        started = self._clock.now()
-        try:
-            yield
-        finally:
-            elapsed = self._clock.now() - started
-            self._note(**{field: getattr(self.outcome, field) + elapsed})

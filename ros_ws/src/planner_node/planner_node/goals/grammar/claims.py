@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from scene_graph import ABOVE, PREDICATES, Phrase
+from scene_graph import ABOVE, PREDICATES, UP, Phrase
 
 from ...errors import InvalidGoalError
 from ..language import NOUNS
@@ -39,6 +39,8 @@ class Claims:
         #: A name of which nothing is said yet.
         self._mentioned: Term | None = None
         self._sides = False
+        #: The last two that were said to be in one place.
+        self._pair: list[Term] = []
         #: Who stands at the bottom of a tower of which it is not yet said where it is.
         self._foot: Term | None = None
         self._footed: Term | None = None
@@ -128,8 +130,36 @@ class Claims:
         if not spoken or any(term.kind is Kind.COUNT for term in spoken):
             raise unclear(subject)
         if subject.kind is Kind.NO and set(self._named) != set(map(key_of, self.subjects)):
-            raise unclear(subject)  # who else was named may be meant as well
+            there = self._standing_in(object_) if object_.is_place else None
+            if there is None or not there:
+                raise unclear(subject)  # who else was named may be meant as well
+            spoken = there
         return replace(subject, others=False, but=tuple(spoken))
+
+    def _standing_in(self, place: Term) -> list[Term] | None:
+        """Those that were said to stand in a place; None: of some it was not said where."""
+        places: dict[str, Term] = {}
+        for _ in self._named:
+            for said in self.relations:
+                if not isinstance(said, ParsedRelation) or said.negated:
+                    continue
+                if (
+                    said.phrase.predicate.name not in (UP, ABOVE)
+                    or said.subject.kind is not Kind.THE
+                ):
+                    continue
+                one, other = key_of(said.subject), key_of(said.object)
+                if said.object.is_place:
+                    places[one] = said.object
+                elif other in places:
+                    places[one] = places[other]
+                elif one in places:
+                    places[other] = places[one]
+        if not places.keys() >= self._named.keys():
+            return None
+        return [
+            term for key, term in self._named.items() if places[key].words.base == place.words.base
+        ]
 
     def _only(
         self, subjects: Sequence[Term], phrase: Phrase, denied: bool, object_: Term, one: Term

@@ -17,9 +17,9 @@ def _with_verb(
 ) -> Relate | None:
     if v and v.may and not v.denied and all(term.only for term in s.terms):
         return _only(Names(tuple(replace(term, only=False) for term in s.terms)), to, "only", v)
-    if not asked(v, s, wished) or (before(to, s) and to[0].denied):
+    if before(to, s) and (to[0].denied or s.terms[0].words.text == "it"):
         return None
-    return relate(s, to, v)
+    return relate(s, to, v) if asked(v, s, wished) else None
 
 
 def _there_with(
@@ -103,6 +103,10 @@ def _on_which(r: Word, t: Names, v: Verb, s: Names) -> Relate | None:
 def _except_for(
     s: Names, to: tuple[Link, ...], e: Names, v: Verb | None = None, wished: bool = False
 ) -> Relate | None:
+    none = s.terms[0].kind is Kind.NO and len(s.terms) == 1
+    if none and v and v.may and not v.denied and not s.terms[0].but:
+        # Those that are left out may be there, and need not.
+        return relate(Names((replace(s.terms[0], but=e.terms),)), to)
     names = but(s, e)
     return relate(names, to, v) if names and asked(v, s, wished) else None
 
@@ -135,6 +139,10 @@ def but(s: Names, e: Names) -> Names | None:
 
 def _must() -> Verb:
     return Verb()
+
+
+def _must_not() -> Verb:
+    return Verb(denied=True)
 
 
 def _top_edge(w: Word, p: Term) -> Link | None:

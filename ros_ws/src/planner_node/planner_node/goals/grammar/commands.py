@@ -122,6 +122,10 @@ def _take(s: Names) -> Take | None:
     return Take(s)
 
 
+def _put_off(s: Names, o: Link) -> Item | None:
+    return None if o.words.text == "from" else _take_off(s, o)  # to where?
+
+
 def _take_off(s: Names, o: Link) -> Item | None:
     if s.either or any(term.is_place for term in s.terms):
         return None

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from scene_graph import ABOVE, LEFT, PREDICATES, UP, Phrase
+from scene_graph import ABOVE, BESIDE, LEFT, PREDICATES, UP, Phrase
 
 from ...errors import InvalidGoalError
 from ..objections import unclear, untold
@@ -75,7 +75,10 @@ class Discourse(Linking):
         self._check_now()
         if self._sides:
             for said in self.relations:
-                if isinstance(said, ParsedRelation) and said.phrase.predicate.name == LEFT:
+                if isinstance(said, ParsedRelation) and said.phrase.predicate.name in (
+                    LEFT,
+                    BESIDE,
+                ):
                     raise unclear(said.subject)  # on the left of all, or of something?
         return tuple(dict.fromkeys(self.relations))
 
@@ -162,7 +165,8 @@ class Discourse(Linking):
         self._put_down()
         if self._mentioned is not None:
             raise unclear(self._mentioned)
-        self._mentioned = item.term
+        if not item.told:
+            self._mentioned = item.term
         self.subjects, self.object, self.link = [item.term], None, None
         if item.term.is_place:
             self.subjects, self.object = [], item.term

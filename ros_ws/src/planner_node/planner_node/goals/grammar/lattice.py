@@ -12,6 +12,7 @@ from scene_graph import COLORS, PREDICATES, SHAPES, Phrase
 
 from ..hashing import hashed_once
 from ..slips import mended
+from .courtesy import courtesies
 from .lexicon import BAD, ENTRIES, FILLER, MORE_COLORS, RELATED
 from .tokens import Token
 
@@ -92,7 +93,8 @@ def lattice_of(tokens: Sequence[Token], literals: Collection[str]) -> Lattice:
     listed = [entry for found in index.values() for _, entry, _, _ in found]
     known = frozenset(word for entry in listed for word in entry) | set(literals) | set(SHAPES)
     alone = {entry[0] for entry in listed if len(entry) == 1} | set(literals)
-    words = [_meant(token.text, known, alone) for token in tokens]
+    written = [token.text for token in tokens]
+    words = [_meant(word, known, alone) for word in written]
     found: Lattice = []
     fillers: list[list[tuple[int, float]]] = []
     for start, token in enumerate(tokens):
@@ -113,6 +115,7 @@ def lattice_of(tokens: Sequence[Token], literals: Collection[str]) -> Lattice:
                 continue
             word = Word(" ".join(entry), means, token.offset, tokens[end - 1].end, phrase)
             here.setdefault(kind, []).append((end, word, cost))
+        skips += [(end, _LEFT_OUT) for end in courtesies(written, start)]
         if token.text.endswith("ly") and token.text not in known | BAD:
             skips.append((start + 1, _ADVERB))  # how it is done
         for kind, said, cost in _kinds(token.text, words[start], literals, alone):
@@ -122,14 +125,19 @@ def lattice_of(tokens: Sequence[Token], literals: Collection[str]) -> Lattice:
         if token.text not in BAD | _JOINING:
             if _REASON.isdisjoint(here):
                 here["REASONWORD"] = [(start + 1, itself, 0.0)]
-            spoken = {kind for kind in here if not kind.startswith("'")}
+            mends = words[start].keys() & BAD  # of "nver", that it may be "never"
+            spoken = {
+                kind
+                for kind, listed in here.items()
+                if not kind.startswith("'") and (mends or not all(cost for *_, cost in listed))
+            }
             if token.text in ("in", "at", "to"):
                 spoken.discard("RELATION")
-            if spoken <= _CHAT:
+            if spoken <= _CHAT and (len(token.text) > 1 or spoken - {"UNKNOWN", "REASONWORD"}):
                 here["CHATWORD"] = [(start + 1, itself, 0.0)]
         found.append(here)
         fillers.append(skips)
-    return _with_fillers(found, fillers, [token.text for token in tokens])
+    return _with_fillers(found, fillers, written)
 
 
 def _meant(word: str, known: frozenset[str], alone: Collection[str]) -> dict[str, float]:

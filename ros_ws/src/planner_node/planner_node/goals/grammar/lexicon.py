@@ -45,5 +45,10 @@ ENTRIES: Final = _entries()
 NO_SLIPS: Final = frozenset(words[0] for words, _ in ENTRIES.pop("NO_SLIPS"))
 #: Words that deny what stands beside them, so that nobody may leave them out.
 BAD: Final = frozenset(words[0] for words, _ in ENTRIES.pop("BAD"))
+#: What courtesies speak of, as it is and as it is not, and their other words; see ``courtesy``.
+COURTESY, COURTESY_DENIED, COURTLY = (
+    frozenset(words[0] for words, _ in ENTRIES.pop(kind))
+    for kind in ("COURTESY", "COURTESYNOT", "COURTLY")
+)
 #: Other ways to say a relation.
 RELATED: Final = tuple(ENTRIES.pop("RELATED"))

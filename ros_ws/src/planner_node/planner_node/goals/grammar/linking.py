@@ -12,7 +12,7 @@ from ..objections import unclear
 from ..parsed import ParsedRelation, in_one_place, none_but
 from ..terms import Described, Kind, Term, Words
 from .anaphora import Anaphora
-from .claims import unclear_words
+from .claims import key_of, unclear_words
 from .meaning import Link, Relate
 from .nominal import INSIDE, UPON
 
@@ -59,6 +59,14 @@ class Linking(Anaphora):
             self._name(*blocks)
             self.subjects, self.object = blocks[:1], others[-1] if others else None
             self.link = None
+            self._pair = blocks if how == "same" and not denied and len(blocks) == 2 else []
+            return
+        if how == "compared":
+            objects = [one for one in self._pair if key_of(one) != key_of(subjects[0])]
+            if denied or len(subjects) > 1 or len(objects) != 1 or link.phrase is None:
+                raise unclear_words(written)
+            self._add(subjects, link.phrase, False, written, objects[0])
+            self.subjects, self.object = subjects, None
             return
         if how == "each other":
             if len(subjects) == 1 and subjects[0].exact == 2:
@@ -110,6 +118,8 @@ class Linking(Anaphora):
                 if denied:
                     raise unclear_words(written)
                 self._add(subjects, _BESIDE, False, written, one)
+        if len(subjects) == 2 and phrase == INSIDE and not denied:
+            self._pair = subjects
         if self._footed is not None and objects[-1].is_place and not denied:
             self._add([self._footed], UPON, False, written, objects[-1])
             self._footed = None

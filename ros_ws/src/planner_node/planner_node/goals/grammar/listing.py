@@ -28,6 +28,11 @@ def _pair(t: Term, u: Term) -> Names | None:
     return _joined((t, u))
 
 
+def _either_of(w: Word) -> Names:
+    """ "nothing on either": of the two that were named, each."""
+    return Names((term_of(words_of(w, text="they"), Kind.EVERY, bare=True),), either=True)
+
+
 def _both(who: Names) -> Names:
     return replace(who, both=True)
 

@@ -36,10 +36,10 @@ class Link:
     Attributes:
         how: what it is where it is no phrase: ``top``, ``bottom`` (of ``names``, or of what was
             spoken of), ``side`` (a phrase, but of a side), ``there``, ``alone``, ``clear``,
-            ``each other``, ``not upon each other``, ``same``, ``different`` (in one place as
-            ``names``, or as one another),
-            ``where`` (another one is now), ``elsewhere``; ``or`` of one that may hold as well as
-            the next.
+            ``each other``, ``not upon each other``, ``compared`` (a phrase, to the other of two
+            that are in one place), ``same``, ``different`` (in one place as ``names``, or as one
+            another), ``where`` (another one is now), ``elsewhere``; ``or`` of one that may hold as
+            well as the next.
         adjacent: the places are neighbours too: "directly left of".
         chained: its subject is the object of the link before.
     """
@@ -75,9 +75,14 @@ class Relate:
 
 @dataclass(frozen=True)
 class Mention:
-    """A block of which something is said next: "blue first, red on that"."""
+    """A block of which something is said next: "blue first, red on that".
+
+    Attributes:
+        told: something was said already that is no matter of the goal.
+    """
 
     term: Term
+    told: bool = False
 
 
 @hashed_once

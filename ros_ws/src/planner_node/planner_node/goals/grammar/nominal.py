@@ -49,6 +49,11 @@ def _colored(a: Word, h: tuple[Word, bool]) -> tuple[Words, bool]:
     return words_of(*sorted((a, h[0]), key=lambda word: word.offset)), h[1]
 
 
+def _shaped(s: Word, a: Word | None = None) -> tuple[Words, bool]:
+    """ "the spherical one"."""
+    return words_of(a, s), False
+
+
 def _doubly(a: Word, b: Word, h: Word) -> tuple[Words, bool]:
     return words_of(a, b, h), False
 
@@ -197,8 +202,11 @@ def _all_but(t: Term, who: Names) -> Term | None:
 
 
 def _all(
-    n: tuple[Words, bool] | None = None, w: Word | None = None, p: Term | None = None
-) -> Term | None:
+    n: tuple[Words, bool] | None = None, w: Word | None = None, p: Term | None = None,
+    o: tuple[Words, bool] | None = None,
+) -> Term | None:  # fmt: skip
+    if o is not None:
+        return _none(o)
     if p is not None:
         return p
     if w is not None:
@@ -238,11 +246,20 @@ def _another(w: Word) -> Term:
     return term_of(words_of(w, text="block"), Kind.COUNT)
 
 
-def _not_colored(
-    a: Word, n: tuple[Words, bool] | None = None, w: Word | None = None
+def _all_not(
+    m: tuple[Words, bool], n: tuple[Words, bool] | None = None, w: Word | None = None
 ) -> Term | None:
-    words = n[0] if n else words_of(w, text="block")
-    return term_of(words, Kind.EVERY, but=(term_of(words_of(a), Kind.EVERY),))
+    """ "every block that is not red", "all non-boxes"."""
+    if n is None and w is None and not m[1]:
+        return None  # "non box"
+    words = (
+        n[0]
+        if n
+        else Words("block", m[0].offset, m[0].end)
+        if w is None
+        else words_of(w, text="block")
+    )
+    return term_of(words, Kind.EVERY, but=(term_of(m[0], Kind.EVERY),))
 
 
 def _it(w: Word) -> Term:

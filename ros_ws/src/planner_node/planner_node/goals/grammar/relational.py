@@ -36,6 +36,11 @@ def _relation(w: Word, who: Names, d: Word | None = None) -> Link | None:
     return Link(words_of(w), phrase, who, adjacent=adjacent)
 
 
+def _sideways(w: Word, who: Names) -> Link | None:
+    phrase = Phrase(PREDICATES[LEFT], inverse=w.means == "right")
+    return _relation(replace(w, phrase=phrase), who)
+
+
 def _misused(w: Word, who: Names) -> Link:
     """Read all the same, so that it can be said what is wrong with it."""
     assert w.phrase is not None
@@ -106,6 +111,10 @@ def _apart(w: Word, who: Names | None = None) -> Link | None:
     if who is None and w.text == "another":
         return None
     return Link(words_of(w), how="different", names=who)
+
+
+def _compared(w: Word) -> Link:
+    return Link(words_of(w), Phrase(PREDICATES[ABOVE], inverse="low" in w.text), how="compared")
 
 
 def _each_other(r: Word) -> Link | None:

@@ -5,12 +5,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from scene_graph import LEFT
+
 from ..terms import Kind, Term
+from .claims import key_of
+from .clausal import but
 from .lattice import Word
 from .lexicon import BAD
 from .meaning import Again, Change, Item, Link, Mention, Names, Relate, Row, Take
 from .nominal import UPON, words_of
-from .verbal import Verb, relate
+from .verbal import Verb, asked, relate
 
 #: Ends of words that tell how something is, or was.
 _TELLING = ("ed", "en", "ly", "less", "ing", "ful")
@@ -37,6 +41,11 @@ def _under(c: Item, f: bool = False) -> Item | None:
 # What says nothing
 
 
+def _spread(c: Row) -> Row | None:
+    """ "from left to right: red, blue, each in its own stack"."""
+    return c if c.predicate == LEFT else None
+
+
 def _again(n: Names) -> Again | None:
     return None if n.either or n.denied else Again(n)
 
@@ -51,6 +60,18 @@ def _respectively(s: Names, w: Word, o: Names) -> tuple[Item, ...] | None:
         Relate(Names((one,)), (Link(words_of(w), w.phrase, Names((other,))),))
         for one, other in pairs
     )
+
+
+def _but_those(
+    s: Names, m: tuple[Link, ...], e: Names, to: tuple[Link, ...], v: Verb, u: Verb | None = None
+) -> tuple[Item, ...] | None:
+    """ "all in stack 0 except red, which goes to stack 1"."""
+    names = but(s, e)
+    if names is None or s.terms[0].kind is not Kind.EVERY:
+        return None
+    said = relate(names, m, u), relate(e, to, v)
+    wished = asked(u, names, False) and asked(v, e, False)
+    return said if wished and None not in said else None  # type: ignore[return-value]
 
 
 def _again_but(n: Names, to: tuple[Link, ...]) -> tuple[Item, ...]:
@@ -120,6 +141,11 @@ def _mention(b: Term) -> tuple[Item, ...]:
     return (Mention(b),)
 
 
+def _told(b: Term) -> tuple[Item, ...]:
+    """ "red is lonely, so put blue next to it"."""
+    return (Mention(b, told=True),)
+
+
 #: An item, and how it is joined to what stands in front of it.
 Joined = tuple[str, tuple[Item, ...]]
 
@@ -130,7 +156,7 @@ def _last(i: tuple[Item, ...]) -> tuple[Joined, ...]:
 
 def _aside_word(w: Word) -> Word | None:
     """What names something else, not what says that it is, or is not, so."""
-    return None if w.text in BAD or w.text.endswith(_TELLING) else w
+    return None if w.text in BAD or w.text.endswith(_TELLING) or len(w.text) == 1 else w
 
 
 def _beside_aside(r: tuple[Joined, ...] = (), i: tuple[Item, ...] = ()) -> tuple[Joined, ...]:
@@ -176,6 +202,34 @@ def _overlap(one: Relate, other: Item) -> bool:
         for each in (one, other)
     ]
     return bool(subjects[0] & subjects[1] or objects[0] & objects[1])
+
+
+def _recounted(i: tuple[Item, ...], q: tuple[int, int | None]) -> tuple[Joined, ...] | None:
+    """ "three blocks in stack 1, no, make it two"."""
+    if len(i) != 1 or not isinstance(i[0], Relate) or i[0].subject is None:
+        return None
+    terms = i[0].subject.terms
+    if len(terms) != 1 or terms[0].kind is not Kind.COUNT or terms[0].among:
+        return None
+    number = replace(terms[0], least=q[0], most=q[1])
+    return (("", (replace(i[0], subject=replace(i[0].subject, terms=(number,))),)),)
+
+
+def _not_that(i: tuple[Item, ...], b: Term, c: Term) -> tuple[Joined, ...] | None:
+    """ "put green in stack 1, no, not the green one, the blue one"."""
+    if len(i) != 1 or not isinstance(i[0], Relate) or i[0].subject is None:
+        return None
+
+    def corrected(names: Names) -> Names:
+        terms = (c if key_of(term) == key_of(b) else term for term in names.terms)
+        return replace(names, terms=tuple(terms))
+
+    links = tuple(
+        link if link.names is None else replace(link, names=corrected(link.names))
+        for link in i[0].links
+    )
+    told = replace(i[0], subject=corrected(i[0].subject), links=links)
+    return (("", (told,)),) if told != i[0] else None
 
 
 def _rather_than(i: tuple[Item, ...]) -> tuple[Joined, ...] | None:

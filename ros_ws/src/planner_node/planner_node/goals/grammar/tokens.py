@@ -48,6 +48,7 @@ _SHORT: Final = {
     "alot": "a lot", "infront": "in front", "upside-down": "upside down", "nr": "number",
     "der": "the", "die": "the", "das": "the", "upto": "up to", "pt": "put", "topof": "top of",
     "whats": "what is", "itll": "it will", "hes": "he is", "whos": "who is",
+    "nonempty": "not empty",
 }  # fmt: skip
 _TAILS: Final = {"d": "would", "ll": "will", "re": "are", "ve": "have", "m": "am", "s": "is"}
 #: Words that are written together with the one beside them: "redon blue", "putthe red".
@@ -135,6 +136,6 @@ def _words(word: str) -> list[str]:
         behind = one in _HUES and other in _GLUED | _NOUNS
         if behind or (one in _GLUED and other in _HUES) or (one, other) == ("put", "the"):
             return [one, other]
-    if "-" in word and word.partition("-")[0] in _HUES:
-        return word.split("-")  # "red-colored"
+    if "-" in word and word.partition("-")[0] in _HUES | {"non"}:
+        return word.split("-")  # "red-colored", "non-red"
     return [word]
