@@ -32,6 +32,11 @@ RIM: Final = 11
 _NEAREST, _FURTHEST = 0.15, 4.0
 #: Which of its greatest coordinates each corner of a box has.
 _CORNERS: Final = tuple(itertools.product((False, True), repeat=3))
+#: Of links that have none: it moves nothing here.
+_INERTIAL: Final = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+)
 #: Files of meshes that pybullet reads.
 _MESHES: Final = (".obj", ".stl", ".dae")
 
@@ -173,12 +178,12 @@ class ArmShape:
             down = slice(*np.searchsorted(rows, (top, bottom + 1.0)))
             across = slice(*np.searchsorted(columns, (left, right + 1.0)))
             looks[down, across] = True
-        kept_rows = looks.any(axis=1)
-        kept_columns = looks.any(axis=0) | looks.any(axis=0)[::-1]
+        kept_rows, kept_columns = (np.asarray(looks.any(axis=axis)) for axis in (1, 0))
+        kept_columns |= kept_columns[::-1].copy()
         return (
             rows[kept_rows].astype(np.intp),
             columns[kept_columns].astype(np.intp),
-            np.asarray(looks[np.ix_(kept_rows, kept_columns)], bool),
+            looks[np.ix_(kept_rows, kept_columns)],
         )
 
 
@@ -197,6 +202,8 @@ def _bodies_only(description: str) -> tuple[str, str]:
         bodies = link.findall("collision") or link.findall("visual")
         for element in link.findall("collision") + link.findall("visual"):
             link.remove(element)
+        if link.find("inertial") is None:  # pybullet would complain about each
+            link.append(ElementTree.fromstring(_INERTIAL))
         for body in filter(_is_usable, bodies):
             body.tag = "collision"
             link.append(body)
