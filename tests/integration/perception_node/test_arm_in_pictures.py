@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 from builtin_interfaces.msg import Time
 from fake_camera import TOWERS, FakeCamera
 from sensor_msgs.msg import JointState
@@ -20,8 +19,7 @@ from sim_node.urdf import robot_description
 
 
 def mirrored(frame: Frame) -> Frame:
-    pictures = (frame.rgb, frame.depth, frame.labels)
-    return Frame(*(np.ascontiguousarray(picture[:, ::-1]) for picture in pictures))
+    return Frame(frame.rgb[:, ::-1], frame.depth[:, ::-1], frame.labels[:, ::-1])
 
 
 def test_mirrored_pictures_are_refused_once_the_arm_is_known(

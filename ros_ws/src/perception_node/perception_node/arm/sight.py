@@ -22,18 +22,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..camera import PinholeCamera
-from ..errors import BadImageError
-from ..observation import Observation
+from ..errors import BadImageError, with_topics_of
+from ..observation import MAX_DEPTH, Observation
 from .shape import ArmShape, SeenArm
 
 #: Depth within this is that of the arm: its shapes may be boxes around what it looks like [m].
 TOLERANCE: Final = 0.05
+#: One sees through it where depth is further by this: cameras may err by some hundredths [m].
+_THROUGH: Final = 0.1
 #: What is narrower than this is the edge of something [px of the grid].
 _SPOT: Final = np.ones((3, 3), np.uint8)
 #: Fewer pixels than these are no evidence that the picture is mirrored, and neither is a smaller
-#: share of those that agree with the arm at all.
+#: share of those at which a mirrored camera would see the arm.
 _MIRRORED_LEAST: Final = 24
 _MIRRORED_SHARE: Final = 0.01
+#: So large a share of the mirrored arm has to be seen where nothing is before it.
+_MIRRORED_WHOLE: Final = 0.6
 #: So many times as many pixels have to say so as say that it is not.
 _MIRRORED_RATIO: Final = 4
 #: So many pixels have to be known, and through so large a share of them one has to see.
@@ -48,8 +52,8 @@ MIRRORED: Final = (
 )
 ELSEWHERE: Final = (
     "the arm is not seen where its joints say that it is ({share:.0%} of it are seen through): the "
-    "camera was moved, or camera/extrinsics or joint_states are those of another one; calibrate "
-    "the camera"
+    "camera was moved, or camera/extrinsics are another one's; calibrate the camera, or check its "
+    "depth and joint_states"
 )
 
 
@@ -58,14 +62,17 @@ class Evidence:
     """How many pixels say what of an arm.
 
     Attributes:
-        agree: the arm is seen where it is to be.
-        met, through: of those far from its outline: it is seen; what is seen is further away.
+        met, through: of those at which it is to be, far from its outline: it is seen; what is seen
+            is further away.
+        mirrored_met, mirrored_open: of those at which a mirrored camera would see it, far from its
+            outline: it is seen; nothing nearer is.
         here, mirrored: it is seen only where it is to be; only where a mirrored camera sees it.
     """
 
-    agree: int
     met: int
     through: int
+    mirrored_met: int
+    mirrored_open: int
     here: int
     mirrored: int
 
@@ -77,9 +84,11 @@ class Evidence:
     @property
     def problem(self) -> str:
         """What contradicts the calibration, and what to do; empty where nothing surely does."""
-        either = self.agree + self.mirrored
-        least = max(_MIRRORED_LEAST, _MIRRORED_SHARE * either, _MIRRORED_RATIO * self.here)
-        if self.mirrored >= least:
+        least = max(
+            _MIRRORED_LEAST, _MIRRORED_SHARE * self.mirrored_met, _MIRRORED_RATIO * self.here
+        )
+        is_whole = self.mirrored_met >= _MIRRORED_WHOLE * self.mirrored_open
+        if self.mirrored >= least and is_whole:
             return MIRRORED
         known = self.met + self.through
         if known >= _THROUGH_LEAST and self.share_through >= _THROUGH_SHARE:
@@ -94,12 +103,20 @@ def evidence_of(arm: SeenArm, depth: NDArray[np.floating]) -> Evidence:
         depth: along the optical axis, shape (h, w) [m]; 0 or NaN where it is not known.
     """
     seen = depth[arm.rows[:, None], arm.columns]
+    reflected, inner = arm.depth[:, ::-1], arm.inner[:, ::-1]
     with np.errstate(invalid="ignore"):
         agrees = np.abs(seen - arm.depth) < TOLERANCE
-        mirrored = np.abs(seen - arm.depth[:, ::-1]) < TOLERANCE
-        through = (seen >= arm.depth + TOLERANCE) & np.isfinite(seen) & arm.inner
+        mirrored = np.abs(seen - reflected) < TOLERANCE
+        through = (seen >= arm.depth + _THROUGH) & (seen < MAX_DEPTH)
+        nearer = (seen > 0.0) & (seen <= reflected - TOLERANCE)
     return Evidence(
-        *(int(np.count_nonzero(pixels)) for pixels in (agrees, agrees & arm.inner, through)),
+        *(
+            int(np.count_nonzero(pixels))
+            for pixels in (
+                *(agrees & arm.inner, through & arm.inner),
+                *(mirrored & inner, inner & ~nearer),
+            )
+        ),
         *(_within(pixels) for pixels in (agrees & ~mirrored, mirrored & ~agrees)),
     )
 
@@ -141,7 +158,7 @@ class ArmSight:
             return
         arm = self.seen_by(camera, observation.camera, told)
         if problem := evidence_of(arm, observation.depth).problem:
-            raise BadImageError(problem)
+            raise BadImageError(with_topics_of(camera, problem))
 
     def seen_by(self, name: str, camera: PinholeCamera, positions: Mapping[str, float]) -> SeenArm:
         """Where the arm is in the picture of a camera; positions as :meth:`ArmShape.posed`."""
