@@ -15,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from perception_scenes import Solid, cast, looking_camera
+from scipy.spatial.transform import Rotation
 from seen_worlds import observe
 
 from perception_node import BadImageError, Observation, PinholeCamera
@@ -110,6 +111,26 @@ def test_an_arm_that_is_seen_through_is_refused(post: ArmSight) -> None:
         for solid in post_and_beam(0.3)
     ]
     assert "seen through" in problem(post, picture(aside), turn=0.3)
+
+
+@pytest.mark.parametrize("offset", [-0.05, 0.05, 0.08])
+def test_depth_that_is_off_by_centimetres_is_not_called_mirrored(
+    panda: ArmSight, arm_world: World, offset: float
+) -> None:
+    joints: dict[str, Any] = dict(zip(arm_world.arm.joints, arm_world.joint_state()[0]))
+    seen = observe(arm_world)
+    assert seen.depth is not None
+    off = np.where(seen.depth > 0.0, seen.depth + offset, 0.0)
+    assert problem(panda, replace(seen, depth=off), **joints) != MIRRORED
+
+
+@pytest.mark.parametrize("turn", [40.0, 90.0, 180.0])
+def test_nothing_is_said_of_an_arm_outside_the_picture(post: ArmSight, turn: float) -> None:
+    seen = picture(post_and_beam(1.2))
+    pose = CAMERA.world_from_optical.copy()
+    pose[:3, :3] = pose[:3, :3] @ Rotation.from_euler("y", turn, degrees=True).as_matrix()
+    away = replace(CAMERA, world_from_optical=pose)
+    assert problem(post, replace(seen, camera=away), turn=1.2) == ""
 
 
 @settings(max_examples=40)

@@ -49,7 +49,8 @@ class SeenArm:
         rows, columns: of the grid, shapes (m,) and (n,) [px]; the columns are their own mirror
             image: the k-th from the left is as far from that edge as the k-th from the right from
             the other one.
-        depth: of the surface along the optical axis, shape (m, n) [m]; NaN where it is not.
+        depth: of the surface along the optical axis, shape (m, n) [m]; NaN where it is not. Empty
+            where the arm is outside the picture.
     """
 
     rows: NDArray[np.intp]
@@ -135,6 +136,9 @@ class ArmShape:
             )
         pybullet.performCollisionDetection(physicsClientId=self._client)  # poses the shapes
         rows, columns, looks = self._grid(camera)
+        depth = np.full(looks.shape, np.nan, np.float32)
+        if not looks.any():
+            return SeenArm(rows, columns, depth)
         down, across = np.nonzero(looks)
         rays = camera.rays_world(np.stack([columns[across], rows[down]], axis=-1))
         eye = camera.position_world
@@ -145,7 +149,6 @@ class ArmShape:
             physicsClientId=self._client,
         )
         share = np.array([hit[2] if hit[0] == self._body else np.nan for hit in hits])
-        depth = np.full(looks.shape, np.nan, np.float32)
         depth[looks] = _NEAREST + share * (_FURTHEST - _NEAREST)
         return SeenArm(rows, columns, depth)
 

@@ -39,7 +39,7 @@ _MIRRORED_SHARE: Final = 0.01
 #: So large a share of the mirrored arm has to be seen where nothing is before it.
 _MIRRORED_WHOLE: Final = 0.6
 #: So many times as many pixels have to say so as say that it is not.
-_MIRRORED_RATIO: Final = 4
+_MIRRORED_RATIO: Final = 6
 #: So many pixels have to be known, and through so large a share of them one has to see.
 _THROUGH_LEAST: Final = 400
 _THROUGH_SHARE: Final = 0.75
@@ -102,6 +102,8 @@ def evidence_of(arm: SeenArm, depth: NDArray[np.floating]) -> Evidence:
     Args:
         depth: along the optical axis, shape (h, w) [m]; 0 or NaN where it is not known.
     """
+    if not arm.depth.size:
+        return Evidence(0, 0, 0, 0, 0, 0)
     seen = depth[arm.rows[:, None], arm.columns]
     reflected, inner = arm.depth[:, ::-1], arm.inner[:, ::-1]
     with np.errstate(invalid="ignore"):
