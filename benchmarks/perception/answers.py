@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from perception.arm import arm_problem, joint_states
 from perception.color_clusters import find_by_color
 from perception.damages import Shot
 from perception.earlier import earlier_state, on_the_way, seen_frozen
@@ -94,6 +95,7 @@ def answer_of(drawn: Drawn, item: PictureSet, locator: Locator, world: World) ->
     """
     world.reset(drawn.layout, drawn.seed)
     exact, truth = world.render(), true_scene_graph(world)
+    joints = joint_states(world)
     sensor = item.sensor
     if drawn.light is not None:
         color = replace(sensor.color, exposure=drawn.light[0], cast=drawn.light[1])
@@ -108,15 +110,20 @@ def answer_of(drawn: Drawn, item: PictureSet, locator: Locator, world: World) ->
     others = {}
     for number, camera in list(enumerate(world.config.cameras))[1 : item.cameras]:
         taken = sense(world.render(number), sensor, (drawn.seed, number, 0))
-        others[camera.name] = view_of(camera, taken).observation(taken.rgb, None, taken.depth)
+        other = view_of(camera, taken).observation(taken.rgb, None, taken.depth)
+        if not arm_problem(world, camera.name, other, joints):
+            others[camera.name] = other
     if item.damage is not None:
         rng = np.random.default_rng([drawn.seed, 13])
         earlier = functools.partial(earlier_state, world, drawn)
         observation = item.damage(observation, Shot(exact.labels, earlier, rng))
+    problem = arm_problem(world, FIRST, observation, joints)
     answer, seen = answer_to(drawn.seed, observation, truth, item, locator, others)
     if item.after and seen_frozen(earlier(), on_the_way(world, drawn), observation):
+        problem = FROZEN_COLORS
+    if problem:
         status = GraphStatus.BAD_IMAGE.name
-        answer = replace(answer, confident=False, status=status, message=FROZEN_COLORS, readings=0)
+        answer = replace(answer, confident=False, status=status, message=problem, readings=0)
     if answer.hides:
         right = is_partly_right(seen.graph, truth, frame, world.config.camera)
         answer = replace(answer, right=right)

@@ -146,9 +146,11 @@ def _of_masks_alone(kind: str, strength: int, damage: Damage = no_depth) -> Pict
 
 def _damaged(name: str, what: str, damage: Damage, mask_source: str = RGBD) -> PictureSet:
     told = name not in UNTOLD
+    same = "a picture of another state of the table looks the same"
+    by_arm = name == "mirrored" and mask_source != RGB
     return PictureSet(
         f"damage_{name}", what, plain(6), 200, mask_source=mask_source, damage=damage, told=told,
-        note=None if told else "a picture of another state of the table looks the same",
+        note=None if told else f"{same}, but for the arm" if by_arm else same,
     )  # fmt: skip
 
 

@@ -26,6 +26,10 @@ class ContradictionError(PerceptionError):
     """Views of two cameras that cannot be of one scene."""
 
 
+class RobotDescriptionError(PerceptionError):
+    """A robot description that is no URDF, or has no shape that could be seen."""
+
+
 class WeightsError(PerceptionError):
     """A weights file that is missing, damaged or not ours; ``path`` is the file."""
 

@@ -45,6 +45,7 @@ except ImportError:  # not among the PyPI packages
 from scene_graph import GraphStatus, SceneGraph
 
 from .alike import Alike
+from .arm.topics import ArmTopics
 from .camera import PinholeCamera
 from .camera_topics import CameraTopics
 from .conversions import (
@@ -89,6 +90,9 @@ class PerceptionNode(Node):
             and the images are heard reliable or best effort, as they are published
         /tf_static (tf2_msgs/TFMessage), where there are such messages: leads to the camera's frame
             as long as there are no extrinsics
+        robot_description (std_msgs/String, latched), joint_states (sensor_msgs/JointState): where a
+            resting arm is to be seen in depth; a picture that surely contradicts it is refused. As
+            long as one of them is missing, nothing is said
         diagnostics (diagnostic_msgs/DiagnosticArray): of the other nodes
     Publishes:
         scene_graph (tamp_interfaces/SceneGraph): one for each frame, its status says whether it can
@@ -156,6 +160,8 @@ class PerceptionNode(Node):
         if self._joined is not None:
             topic = f"{self._last_camera}/view_request"
             self._views = self.create_publisher(PoseStamped, topic, NEWEST)
+        by_depth = self._values["mask_source"] != RGB
+        self._arm = ArmTopics(self, self._values["world_frame"]) if by_depth else None
         if TFMessage is not None:
             self.create_subscription(
                 TFMessage, "/tf_static", self._on_frames, STATUS, callback_group=frames
@@ -266,8 +272,12 @@ class PerceptionNode(Node):
         observations, unchanged, bad = {}, 0.0, []
         for name, frame in moment.items():
             try:
-                observations[name], seconds = self._cameras[name].observation(frame)
+                camera = self._cameras[name]
+                observation, seconds = camera.observation(frame)
                 unchanged = max(unchanged, seconds)
+                if self._arm is not None:
+                    self._arm.check(camera, frame, observation)
+                observations[name] = observation
             except BadImageError as error:
                 bad.append(str(error))
         if not observations:
@@ -332,6 +342,8 @@ class PerceptionNode(Node):
 
     def destroy_node(self) -> None:
         """Writes the pictures that are kept and not written yet."""
+        if self._arm is not None:
+            self._arm.stop()
         if self._recorder is not None:
             try:
                 self._recorder.flush()
