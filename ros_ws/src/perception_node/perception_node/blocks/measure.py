@@ -169,7 +169,7 @@ def _rival(best: Fit, costs: Mapping[str, float]) -> str:
 
 
 def _turn_poor_ones(best: list[Fit], evidence: Sequence[Evidence]) -> None:
-    """Boxes that fit badly are fitted anew: from a little further left and right, and as wide as seen.
+    """Boxes that fit badly are fitted anew: from a little further left and right, and as seen.
 
     Where a side is seen at a glancing angle, the descent can get stuck beside the best yaw, or
     where the block is taken to be as deep as wide.
