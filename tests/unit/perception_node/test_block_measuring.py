@@ -4,6 +4,7 @@
 from collections.abc import Sequence
 from itertools import pairwise
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -194,6 +195,24 @@ def test_a_few_pixels_without_depth_are_tolerated() -> None:
     depth = np.where(lost, nothing, depth)
     surfaces = measure_blocks(Segments.from_labels(labels), depth, CAMERA, depth_noise(depth))
     assert max(errors_of(pose_blocks(surfaces, [[0, 1]], [0.0]), solids)) < 2.0
+
+
+@pytest.mark.parametrize("gap", [1, 2])
+def test_a_block_does_not_end_where_depth_is_lost_before_what_covers_it(gap: int) -> None:
+    covered = Solid(BOX, (0.4, 0.02, 0.0225))
+    solids = [covered, *(Solid(BOX, (0.6, 0.0, 0.0225 + 0.045 * level)) for level in range(4))]
+    depth, labels = cast(solids, CAMERA)
+    at = labels == 1
+    assert 0.3 < np.count_nonzero(at) / np.count_nonzero(cast([covered], CAMERA)[1]) < 0.8
+    others = cv2.dilate(at.view(np.uint8), np.ones((1, 2 * gap + 1))) > 0
+    lost = others & (labels > 1)
+    depth[lost], labels[lost] = np.nan, 0
+    surface = measure_blocks(Segments.from_labels(labels), depth, CAMERA)[0]
+    left, right = surface.position[1] + np.array([-0.5, 0.5]) * surface.widths[1]
+    doubt = 3.0 * surface.covariance[4, 4] ** 0.5
+    assert abs(right - 0.0425) < 0.002
+    assert left < -0.0025 + 0.002 + doubt
+    assert surface.widths[1] + doubt > 0.045
 
 
 @pytest.mark.parametrize("value", [np.nan, 0.0, np.inf, -1.0])

@@ -17,7 +17,7 @@ from scene_graph import ROW_OF_THREE
 from sim_node.camera import Frame
 from sim_node.generators import generate_layout
 from sim_node.layouts import random_layout
-from sim_node.scene import load_scene
+from sim_node.scene import load_scene, parse_scene
 from sim_node.sensor import ColorConfig, DepthConfig, SensorConfig, sense
 from sim_node.world import World
 
@@ -79,6 +79,29 @@ def test_blocks_of_other_scenes_are_found_as_well(name: str) -> None:
             frame = world.render()
             found = find(world, frame, volume)
             assert len(found) == 6 and min(overlaps(frame.labels, found)) >= 0.85
+
+
+LIT_ALIKE = """
+places: [[0.5185, -0.2006], [0.5545, -0.0266]]
+blocks:
+  named:
+    red_cylinder: {size: [0.0335, 0.0335, 0.0659]}
+    orange_cylinder: {size: [0.037, 0.037, 0.0403]}
+    yellow_box: {size: [0.0502, 0.0325, 0.0639]}
+cameras:
+  - {position: [1.4425, -0.3711, 0.4], target: [0.5513, -0.0423, 0.155], vertical_fov: 0.52}
+yaw_jitter: 0.785
+"""
+
+
+def test_a_block_is_one_whose_lid_is_as_bright_as_its_front() -> None:
+    volume = Volume.over(np.array([(0.5185, -0.2006, 0.0), (0.5545, -0.0266, 0.0)]), 0.36)
+    with World(parse_scene(LIT_ALIKE)) as world:
+        world.reset((("orange_cylinder", "red_cylinder"), ("yellow_box",)), 5_000_034)
+        frame = world.render()
+        found = find(world, frame, volume)
+    assert len(found) == 3
+    assert min(overlaps(frame.labels, found)) >= 0.85
 
 
 @pytest.mark.parametrize("position", [(0.5, 0.0, 0.15), (0.5, -0.15, 0.3), (0.6, 0.1, 0.2)])

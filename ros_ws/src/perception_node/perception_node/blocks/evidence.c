@@ -7,9 +7,10 @@
 #include <stdlib.h>
 
 /* Images by rows, (h, w). points: (4 h w, 2) at most, of the four directions one after another;
- * shared: how many lie on the line of each. Returns how many there are, or -1 without memory. */
+ * shared: how many lie on the line of each; reach: see REACH in evidence.py. Returns how many there
+ * are, or -1 without memory. */
 int ends(int height, int width, const uint8_t *mask, const uint8_t *goes_on, const double *depth,
-         double in_front, double noise, double *points, double *shared) {
+         double in_front, double noise, int reach, double *points, double *shared) {
     int found = 0, *lines = malloc(sizeof(int) * (height > width ? height : width));
     if (!lines) return -1;
     for (int way = 0; way < 4; ++way) {
@@ -22,7 +23,14 @@ int ends(int height, int width, const uint8_t *mask, const uint8_t *goes_on, con
                 if (!mask[at] || line + step < 0 || line + step >= count) continue;
                 if (mask[at + beside] || goes_on[at + beside]) continue;
                 const double own = isnan(depth[at]) ? 0.0 : depth[at];
-                if (depth[at] - depth[at + beside] > in_front + 4.0 * noise * (own * own)) continue;
+                int next = at + beside;
+                for (int n = 2; n <= reach && isnan(depth[next]); ++n) {
+                    if (line + n * step < 0 || line + n * step >= count) break;
+                    next = at + n * beside;
+                }
+                if (mask[next]) next = at + beside;
+                if (goes_on[next] && !isnan(depth[next])) continue;
+                if (depth[at] - depth[next] > in_front + 4.0 * noise * (own * own)) continue;
                 points[2 * found] = column + (across ? 0.5 * step : 0.0);
                 points[2 * found + 1] = row + (across ? 0.0 : 0.5 * step);
                 shared[found++] = line;

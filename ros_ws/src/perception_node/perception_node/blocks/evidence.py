@@ -35,6 +35,9 @@ SIDES: Final = 6.0
 MAX_DEPTHS: Final = 200
 #: A neighbour nearer than this much, beyond the noise, is in front of the block [m].
 IN_FRONT: Final = 0.004
+#: Where a neighbour has no depth, as often at edges, the next one with it counts, no further than
+#: this [px].
+REACH: Final = 3
 #: A block that is higher than another one by this, and no further beside it than that, may stand on
 #: it: between the medians of what is seen of both [m].
 HIGHER: Final = 0.008
@@ -94,7 +97,7 @@ def evidence_of(
     if len(rows) == 0:
         raise BadImageError("it has no pixels")
     top, left = rows[0], columns[0]
-    # One more pixel on every side; what is beyond the picture is unlike anything.
+    # Some more pixels on every side; what is beyond the picture is unlike anything.
     wide = _padded(part, rows, columns, fill=False)
     labels = _padded(segments.label_image, rows, columns, fill=-1)
     near = _padded(depth, rows, columns, fill=np.nan).astype(np.float64)
@@ -109,7 +112,9 @@ def evidence_of(
             known = reliable
     at = np.flatnonzero(known)
     at = at[:: -(-len(at) // MAX_DEPTHS)]
-    inner = np.stack([at % wide.shape[1] + left - 1, at // wide.shape[1] + top - 1], axis=-1)
+    inner = np.stack(
+        [at % wide.shape[1] + left - REACH, at // wide.shape[1] + top - REACH], axis=-1
+    )
     depths = near.ravel()[at]
     goes_on = labels == -1
     for label in covers:
@@ -120,7 +125,7 @@ def evidence_of(
         points=camera.position_world + rays * depths[:, None],
         rays=rays,
         noise=np.maximum(noise * depths**2, 2e-4),
-        outline=outline + (left - 1, top - 1),
+        outline=outline + (left - REACH, top - REACH),
         camera=camera,
         edge_noise=_edge_noise(shared, edge_doubt),
     )
@@ -141,8 +146,9 @@ def _edge_noise(shared: Array, doubt: float) -> Array:
 def _padded(
     image: NDArray[Any], rows: NDArray[np.intp], columns: NDArray[np.intp], fill: float
 ) -> NDArray[Any]:
-    """The part of an image from the first to the last row and column, and one pixel around."""
-    top, bottom, left, right = rows[0] - 1, rows[-1] + 2, columns[0] - 1, columns[-1] + 2
+    """The part of an image from the first to the last row and column, and REACH pixels around."""
+    top, bottom = rows[0] - REACH, rows[-1] + REACH + 1
+    left, right = columns[0] - REACH, columns[-1] + REACH + 1
     height, width = image.shape
     # Labels have no negative numbers, but what is beyond the picture is like none of them.
     kind = np.int64 if np.issubdtype(image.dtype, np.integer) else image.dtype
@@ -192,7 +198,7 @@ def _ends(mask: Mask, goes_on: Mask, depth: Array, noise: float) -> tuple[Array,
     pointers = map(address, (*images, points, shared))
     count = library.ends(
         *mask.shape, next(pointers), next(pointers), next(pointers),
-        ctypes.c_double(IN_FRONT), ctypes.c_double(noise), next(pointers), next(pointers),
+        ctypes.c_double(IN_FRONT), ctypes.c_double(noise), REACH, next(pointers), next(pointers),
     )  # fmt: skip
     if count < 0:
         raise MemoryError("no memory to find where a block ends")
@@ -207,9 +213,10 @@ def ends_by_numpy(mask: Mask, goes_on: Mask, depth: Array, noise: float) -> tupl
         other = (slice(None),) * axis + (slice(None, -1) if step < 0 else slice(1, None),)
         border = mask[mine] & ~mask[other] & ~goes_on[other]
         tolerance = IN_FRONT + 4.0 * noise * np.nan_to_num(depth[mine]) ** 2
+        nearest, behind = _known_beside(mask, goes_on, depth, axis, step)
         with np.errstate(invalid="ignore"):
-            hidden = depth[mine] - depth[other] > tolerance
-        rows, columns = pixels_of(border & ~hidden)
+            hidden = depth[mine] - nearest[mine] > tolerance
+        rows, columns = pixels_of(border & ~hidden & ~behind[mine])
         point = np.stack([columns, rows], axis=-1).astype(np.float64)
         # Row or column of the block's own pixel, and half a pixel towards the other one.
         point[:, 1 - axis] += (1.0 if step < 0 else 0.0) + 0.5 * step
@@ -217,3 +224,24 @@ def ends_by_numpy(mask: Mask, goes_on: Mask, depth: Array, noise: float) -> tupl
         found.append((point, count[line].astype(np.float64)))
     points, shared = zip(*found)
     return np.concatenate(points), np.concatenate(shared)
+
+
+def _known_beside(
+    mask: Mask, goes_on: Mask, depth: Array, axis: int, step: int
+) -> tuple[Array, Mask]:
+    """For each pixel the depth of the first one with it, and whether the block may go on behind it.
+
+    Of the REACH pixels that follow in a direction; NaN where none has depth, or the first is of the
+    block.
+    """
+    nearest, behind = np.full(depth.shape, np.nan), np.zeros(depth.shape, bool)
+    count, sought = depth.shape[axis], np.ones(depth.shape, bool)
+    for far in range(1, min(REACH, count - 1) + 1):
+        mine = (slice(None),) * axis + ((slice(far, None) if step < 0 else slice(None, -far)),)
+        other = (slice(None),) * axis + ((slice(None, -far) if step < 0 else slice(far, None)),)
+        found = sought[mine] & np.isfinite(depth[other])
+        usable = found & ~mask[other]
+        nearest[mine] = np.where(usable, depth[other], nearest[mine])
+        behind[mine] |= usable & goes_on[other]
+        sought[mine] &= ~found
+    return nearest, behind

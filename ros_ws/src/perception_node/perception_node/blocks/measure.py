@@ -29,6 +29,8 @@ PERFECT: Final = 0.12
 #: With noise of depth from this on [m at 1 m], as well as this.
 NOISY: Final = 0.0005
 PERFECT_NOISY: Final = 0.36
+#: A box that is narrower than so many standard deviations of its depth may be round all the same.
+NARROW: Final = 12.0
 #: What fits as well as this is no ball, of which a box has more than 0.8.
 GOOD: Final = 0.55
 #: A shape is in doubt where another one costs hardly more than the best: of boxes and cylinders of
@@ -142,13 +144,22 @@ def _best(evidence: Sequence[Evidence], noise: float) -> tuple[list[Fit], list[s
     costs = [{item.model.shape: item.cost} for item in best]
     perfect = PERFECT if noise < NOISY else PERFECT_NOISY
     for enough, model, start in ((perfect, CylinderModel(), _cylinder), (GOOD, BallModel(), _ball)):
-        doubtful = [index for index, item in enumerate(best) if item.cost > enough]
+        doubtful = [
+            index
+            for index, (item, seen) in enumerate(zip(best, evidence))
+            if item.cost > enough or (model.shape == CYLINDER and _is_narrow(item, seen))
+        ]
         others = _fit(model, start, [evidence[index] for index in doubtful])
         for index, other in zip(doubtful, others):
             costs[index][model.shape] = other.cost
             best[index] = min(best[index], other, key=lambda item: item.cost)
     _turn_poor_ones(best, evidence)
     return best, [_rival(item, others) for item, others in zip(best, costs)]
+
+
+def _is_narrow(box: Fit, evidence: Evidence) -> bool:
+    noise = float(quantiles(evidence.noise, 0.5)[0])
+    return bool(box.parameters[box.model.extents].min() < NARROW * noise)
 
 
 def _rival(best: Fit, costs: Mapping[str, float]) -> str:
@@ -159,18 +170,22 @@ def _rival(best: Fit, costs: Mapping[str, float]) -> str:
 
 
 def _turn_poor_ones(best: list[Fit], evidence: Sequence[Evidence]) -> None:
-    """Boxes that fit badly are fitted anew from a little further left and right.
+    """Boxes that fit badly are fitted anew: from a little further left and right, and as seen.
 
-    Where a side is seen at a glancing angle, the descent can get stuck beside the best yaw.
+    Where a side is seen at a glancing angle, the descent can get stuck beside the best yaw, or
+    where the block is taken to be as deep as wide.
     """
     poor = [index for index, item in enumerate(best) if item.cost > GOOD]
-    again = [(index, turn) for index in poor for turn in TURNS]
+    again = [(index, turn) for index in poor for turn in (*TURNS, 0.0)]
     if not again:
         return
     starts, priors = [], []
-    begins = {index: _box(evidence[index]) for index in poor}
+    begins = {
+        (index, as_seen): _box(evidence[index], as_seen=as_seen)
+        for index, as_seen in {(index, turn == 0.0) for index, turn in again}
+    }
     for index, turn in again:
-        start, prior = begins[index]
+        start, prior = begins[index, turn == 0.0]
         start = start.copy()
         start[2] += turn
         starts.append(start)
@@ -189,8 +204,12 @@ def _fit(
     return fit(model, starts, priors, evidence)
 
 
-def _box(evidence: Evidence) -> tuple[Array, Prior]:
-    """Where the fit of a box begins, and what is known of it beforehand."""
+def _box(evidence: Evidence, as_seen: bool = False) -> tuple[Array, Prior]:
+    """Where the fit of a box begins, and what is known of it beforehand.
+
+    Args:
+        as_seen: whether no width is taken for more than is seen of it.
+    """
     points = evidence.points
     low, high = quantiles(points[:, 2], 0.02, 0.98)
     walls = points[points[:, 2] < high - min(0.003, 0.3 * (high - low))]
@@ -204,7 +223,7 @@ def _box(evidence: Evidence) -> tuple[Array, Prior]:
     back = np.where(sign > 0, ends[0], ends[1])
     widths = np.maximum(sign * (front - back), 0.012)
     # What is hardly seen of a face says nothing of how far it goes.
-    if widths.min() < 0.75 * widths.max():
+    if widths.min() < 0.75 * widths.max() and not as_seen:
         widths[:] = widths.max()
     centre = (front - sign * 0.5 * widths) @ axes
     start = np.array([*centre, yaw, *widths, low, high])

@@ -77,6 +77,9 @@ LEVEL: Final = 0.0025
 QUARTILES: Final = (25.0, 75.0)
 #: Normals of upright facets with a greater cosine between them are of one plane.
 ONE_PLANE: Final = 0.92
+#: A facet whose points are spread further than this about their plane [m] has none: lid and front
+#: are one where light falls on both alike.
+BENT: Final = 0.004
 #: Middles of two faces of one block are nearer than this, seen from above [m].
 ONE_BODY: Final = 0.08
 #: What hangs higher than this over what it should stand on does not stand [m].
@@ -132,6 +135,7 @@ class _Table:
         chroma, light: means, shapes (F, 3), (F,).
         centre, low, high: mean and about the ends of the points, shape (F, 3) [m].
         normal: of the plane through them, shape (F, 3).
+        bent: whether they lie in no plane.
         level: whether it is a horizontal face.
     """
 
@@ -145,6 +149,7 @@ class _Table:
     low: Array
     high: Array
     normal: Array
+    bent: Mask
     level: Mask
 
 
@@ -222,7 +227,8 @@ def _grow_down(
 def _measure(facets: Facets, look: Look, region: Region, smear: int, strip: int) -> _Table:
     found = sums(facets, look, region.points, region.sure, FEW)
     centre, spread = found.centres, found.spreads[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3)
-    normal = np.linalg.eigh(spread)[1][:, :, 0]
+    variances, axes = np.linalg.eigh(spread)
+    normal = axes[:, :, 0]
     # Of points that fill a face evenly these are its ends; a stray one does not move them far.
     reach = np.sqrt(3.0 * np.einsum("fii->fi", spread))
     # By the middle half of the points: a lid may run down a side that looks like it.
@@ -242,6 +248,7 @@ def _measure(facets: Facets, look: Look, region: Region, smear: int, strip: int)
         centre - reach,
         centre + reach,
         normal,
+        variances[:, 0] > BENT**2,
         level & wide,
     )
 
@@ -297,10 +304,13 @@ def _can_be_one_block(table: _Table, a: NDArray[np.int64], b: NDArray[np.int64])
     sliver = beside & (np.minimum(table.sure[a], table.sure[b]) < SLIVER)
     flat = np.abs(np.einsum("ni,ni->n", table.normal[a], table.normal[b])) > ONE_PLANE
     lit = np.abs(table.light[a] - table.light[b]) < MAX_CONTRAST
-    alike = same_hue & lit
-    alike &= both_level | on_top | (upright & (np.where(flat, same_light, beside) | sliver))
-    # Where shape leaves no doubt, colour need not tell: what mirrors the room has another one.
     near = np.linalg.norm(table.centre[a, :2] - table.centre[b, :2], axis=1) < ONE_BODY
+    # What is bent has the normal of none of its faces.
+    bent = beside & near & (table.bent[a] | table.bent[b])
+    walls = np.where(flat, same_light | bent, beside)
+    alike = same_hue & lit
+    alike &= both_level | on_top | (upright & (walls | sliver))
+    # Where shape leaves no doubt, colour need not tell: what mirrors the room has another one.
     near &= table.broad[a] & table.broad[b]
     just_on_top = on_top & (table.centre[lid, 2] < table.high[wall, 2] + SAME_HEIGHT)
     return np.asarray(alike | (near & just_on_top))
