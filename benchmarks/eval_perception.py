@@ -4,8 +4,9 @@
 Renders the pictures of each set of :mod:`perception.sets` (seeds from 1000), lets perception
 interpret them, and compares the whole graph, every relation and name, with the simulator's truth.
 ``--set`` picks sets by name and publishes nothing, ``--n`` takes so many pictures of each at most;
-sets are kept one by one in ``runs/eval_perception``, so that ``--resume`` goes on with those that
-are left. Writes ``benchmarks/results/perception.json``; ``QUICK=1`` takes 30 pictures of each set.
+answers are kept set by set in ``runs/eval_perception``, so that ``--resume`` goes on with pictures
+that are left, and takes those of a set that was looked at in more pictures, too. Writes
+``benchmarks/results/perception.json``; ``QUICK=1`` takes 30 pictures of each set.
 """
 
 from __future__ import annotations
@@ -71,25 +72,26 @@ def main() -> int:
 
 
 def _answers(item: PictureSet, count: int, jobs: int, resume: bool) -> list[Answer]:
-    """Of the first pictures of a set; from the file of an earlier run if there is one."""
+    """Of the first pictures of a set, those that an earlier run looked at from its file."""
     path = RUNS / f"{item.name}.json"
-    if resume and path.is_file():
-        kept = [Answer(**_with_tuples(entry)) for entry in json.loads(path.read_text())]
-        if len(kept) == count:
-            return kept
-    chunks = [range(first, min(first + CHUNK, count)) for first in range(0, count, CHUNK)]
     found: list[Answer] = []
+    if resume and path.is_file():
+        found = [Answer(**_with_tuples(entry)) for entry in json.loads(path.read_text())]
+    done = len(found)
+    chunks = [
+        range(first, min(first + CHUNK, count)) for first in range(done, max(done, count), CHUNK)
+    ]
+    path.parent.mkdir(parents=True, exist_ok=True)
     with (
         ProcessPoolExecutor(jobs, initializer=torch.set_num_threads, initargs=(1,)) as pool,
-        tqdm(total=count, desc=item.name, unit="picture") as progress,
+        tqdm(total=max(done, count), initial=done, desc=item.name, unit="picture") as progress,
     ):
         for part in pool.map(_look, [item.name] * len(chunks), chunks):
             found += part
+            partial = path.with_suffix(".partial")
+            partial.write_text(json.dumps([asdict(answer) for answer in found]))
+            partial.replace(path)
             progress.update(len(part))
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_suffix(".partial")
-    partial.write_text(json.dumps([asdict(answer) for answer in found]))
-    partial.replace(path)
     return found
 
 
