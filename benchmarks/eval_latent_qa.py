@@ -35,7 +35,7 @@ from perception_node.latent.qa_trainer import SETTINGS, QaConfig, QaTrainer, Rea
 from perception_node.latent.state_encoder import CHANNELS, EncoderConfig
 
 #: Passes over the images of each setting's training.
-EPOCHS: Final = {"reconstruction": 16, "both": 3, "kl": 3}
+EPOCHS: Final = {"reconstruction": 16, "both": 9, "kl": 9}
 #: Peak of the learning rate of a training that goes on from another one.
 FURTHER_RATE: Final = 3e-4
 
@@ -75,7 +75,7 @@ def measure(options: argparse.Namespace) -> list[Row]:
             config = QaConfig(
                 encoder,
                 setting,
-                epochs=epochs[setting],
+                epochs=epochs.get(f"{setting}@{encoder.channels}", epochs[setting]),
                 learning_rate=FURTHER_RATE if start else QaConfig.learning_rate,
                 seed=options.seed,
             )
@@ -97,10 +97,14 @@ def measure(options: argparse.Namespace) -> list[Row]:
 
 
 def _epochs(text: str) -> tuple[str, int]:
-    setting, _, number = text.partition("=")
-    if setting not in SETTINGS or not number.isdigit():
-        raise argparse.ArgumentTypeError(f"{text!r} is not SETTING=NUMBER, as kl=8")
-    return setting, int(number)
+    name, _, number = text.partition("=")
+    setting, _, channels = name.partition("@")
+    known = setting in SETTINGS and (not channels or channels in map(str, CHANNELS))
+    if not known or not number.isdigit():
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not SETTING=NUMBER, as kl=8, or of one size SETTING@CHANNELS=NUMBER"
+        )
+    return name, int(number)
 
 
 def _without_folders(arguments: Sequence[str]) -> list[str]:
@@ -118,7 +122,7 @@ def _parse() -> argparse.Namespace:
     parser.add_argument("--data", type=Path, default=Path("data/latent"), help="folder of the sets")
     parser.add_argument("--runs", type=Path, default=Path("runs/latent_qa"), help="of trainings")
     parser.add_argument("--settings", nargs="+", choices=SETTINGS, default=list(SETTINGS))
-    parser.add_argument("--channels", nargs="+", type=int, choices=CHANNELS, default=[64])
+    parser.add_argument("--channels", nargs="+", type=int, choices=CHANNELS, default=[64, 16, 8])
     parser.add_argument("--answerer", choices=ANSWERERS, default="program")
     parser.add_argument("--quantiser", default="binary", help="of the encoder")
     parser.add_argument("--width", type=int, default=24, help="of the encoder's layers")
@@ -127,7 +131,7 @@ def _parse() -> argparse.Namespace:
         nargs="+",
         type=_epochs,
         default=[],
-        help=f"SETTING=NUMBER of an encoder's training, else {EPOCHS}",
+        help=f"SETTING=NUMBER or SETTING@CHANNELS=NUMBER of encoders' trainings, else {EPOCHS}",
     )
     parser.add_argument("--reader-epochs", type=int, default=14, help="of the answerer's")
     parser.add_argument("--threads", type=int, default=2, help="processor threads")
