@@ -15,6 +15,7 @@ from geometry_msgs.msg import PoseStamped
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from tamp_interfaces.srv import Disturb, ResetScene
+from tamp_runtime.large_messages import make_room_for_pictures
 from tamp_runtime.messages.stamps import nanoseconds, stamp_from_nanoseconds
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
@@ -289,6 +290,7 @@ def run() -> int:
 
     That is ``EXIT_PHYSICS_FAILED`` (3) if it ended because its physics did, else as ``run_node``.
     """
+    make_room_for_pictures()
     made: list[SimNode] = []
 
     def make() -> SimNode:
