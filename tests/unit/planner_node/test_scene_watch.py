@@ -264,6 +264,9 @@ def test_one_that_does_not_go_there_is_waited_for_once() -> None:
     assert 3.0 <= asked.waited() < 4.0
     assert asked.watch.wait(never).hidden == (1,)
     assert asked.waited() == 0.0
+    asked.see(status=GraphStatus.OCCLUDED)  # by the arm, which moves something aside
+    asked.see_less()
+    assert asked.waited() == 0.0
     asked.see()
     assert asked.waited() == 0.0
     asked.see_less()  # what it was asked before is over

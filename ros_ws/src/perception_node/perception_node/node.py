@@ -11,10 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import cv2
-import numpy as np
 import torch
-from geometry_msgs.msg import PoseStamped
-from numpy.typing import NDArray
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from sensor_msgs.msg import Image
@@ -30,7 +27,6 @@ from tamp_runtime.messages.images import (
     image_from_array,
     labels_from_image,
 )
-from tamp_runtime.messages.stamps import nanoseconds
 from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.presence import Presence
@@ -42,24 +38,21 @@ try:
 except ImportError:  # not among the PyPI packages
     TFMessage = None
 
-from scene_graph import GraphStatus, SceneGraph
+from scene_graph import GraphStatus
 
 from .alike import Alike
 from .arm.topics import ArmTopics
-from .camera import PinholeCamera
 from .camera_topics import CameraTopics
 from .conversions import (
     frame_pose_from_message,
     markers_from_graph,
     perceived_to_message,
-    pose_to_message,
 )
 from .drawing import draw_scene_graph
 from .errors import BadImageError, DatasetError
 from .frame_pairing import StampedSet
 from .joined_views import JoinedViews
 from .moments import Moments
-from .next_view import next_view
 from .observation import Observation
 from .parameters import FOUND, PARAMETERS, config_from_parameters
 from .pipeline import Perceived, Perception
@@ -67,14 +60,13 @@ from .places_kept import PlacesKept
 from .segment import RGB
 from .segment.rgb import network
 from .training.recording import Recorder
+from .view_requests import ViewRequests
 from .visual_module.weights import DEFAULT_WEIGHTS, load_weights
 
 #: After this long without a complete frame, though images arrive, the reason is published [s].
 SILENCE: Final = 2.0
 #: Pictures that have been the same for so long may be an old one, sent again and again [s].
 FROZEN: Final = 2.0
-#: A camera is where it was asked to be by so much before its pictures from there are used [ns].
-ARRIVING: Final = 2 * 10**9
 
 
 class PerceptionNode(Node):
@@ -132,9 +124,6 @@ class PerceptionNode(Node):
         self._recorder = _recorder(self._values["record"])
         self._status: GraphStatus | None = None
         self._told = ""
-        self._last_seen: PinholeCamera | None = None
-        self._asked: NDArray[np.float64] | None = None
-        self._asked_at = 0
         names = self._values["cameras"]
         self._joined = JoinedViews(self._kept.perception, names[0]) if names[1:] else None
         self._create_interfaces()
@@ -155,11 +144,9 @@ class PerceptionNode(Node):
             for name in self._values["cameras"]
         }
         self._main = next(iter(self._cameras.values()))
-        self._last_camera = self._values["cameras"][-1]
         self._views = None
         if self._joined is not None:
-            topic = f"{self._last_camera}/view_request"
-            self._views = self.create_publisher(PoseStamped, topic, NEWEST)
+            self._views = ViewRequests(self, self._values["cameras"][-1])
         by_depth = self._values["mask_source"] != RGB
         self._arm = ArmTopics(self, self._values["world_frame"]) if by_depth else None
         if TFMessage is not None:
@@ -254,7 +241,8 @@ class PerceptionNode(Node):
             perceived = replace(
                 perceived, message="; ".join(filter(None, (perceived.message, note)))
             )
-        asked = self._ask_for_view(perceived.graph, header)
+        config = self._kept.perception.config
+        asked = self._views is not None and self._views.ask(perceived.graph, config, header)
         self._publish(perceived, header, frame.arrival, asked)
         rgb = main.picture
         if rgb is not None and self.context.ok() and self._drawings.get_subscription_count():
@@ -283,8 +271,9 @@ class PerceptionNode(Node):
         if not observations:
             raise BadImageError("; ".join(bad))
         main = next(iter(observations.values()))
-        last = observations.get(self._last_camera)
-        self._last_seen = None if last is None else last.camera
+        if self._views is not None:
+            last = observations.get(self._views.camera)
+            self._views.seen = None if last is None else last.camera
         if self._joined is None:
             perceived = self._kept.perceive(main)
         else:
@@ -306,29 +295,6 @@ class PerceptionNode(Node):
             )
             perceived = replace(perceived, message=perceived.message + hint)
         return replace(perceived, message="; ".join(filter(None, (perceived.message, *bad))))
-
-    def _ask_for_view(self, graph: SceneGraph, header: Header) -> bool:
-        """Says from where the last camera would see what is hidden, whenever that is elsewhere.
-
-        Returns whether it may be about to be seen so.
-        """
-        if self._views is None or not self._views.get_subscription_count():
-            return False
-        stamp, camera = nanoseconds(header.stamp), self._last_seen
-        arriving = 0 <= stamp - self._asked_at < ARRIVING
-        if camera is None:
-            return arriving
-        view = next_view(graph, camera, self._kept.perception.config)
-        if view is None:
-            return arriving
-        there = view.world_from_optical
-        if np.allclose(there, camera.world_from_optical, atol=0.01):
-            return arriving
-        if self._asked is None or not np.allclose(self._asked, there, atol=0.01):
-            self.get_logger().info(f"{self._last_camera} is asked to look at what is hidden")
-        self._asked, self._asked_at = there, stamp
-        self._views.publish(PoseStamped(header=header, pose=pose_to_message(there)))
-        return True
 
     def _record(self, observation: Observation, perceived: Perceived) -> None:
         if self._recorder is None:

@@ -37,14 +37,16 @@ class SceneWatch:
         self._newest: Sighting | None = None
         self._readings = Readings()
         self._heard = 0.0
-        self._view_asked = 0.0
+        self._view_requested, self._view_asked = False, 0.0
 
     def receive(self, sighting: Sighting) -> None:
         """Takes what perception reports in place of what it reported before."""
         with self._arrived:
             now = self._clock.now()
-            if sighting.view_requested and not (self._raw and self._raw.view_requested):
-                self._view_asked = now
+            if sighting.status.sees_all or sighting.status is GraphStatus.HIDDEN:
+                if sighting.view_requested and not self._view_requested:
+                    self._view_asked = now
+                self._view_requested = sighting.view_requested
             self._raw, self._newest = sighting, self._readings.named(sighting)
             self._heard = now
             self._arrived.notify_all()
