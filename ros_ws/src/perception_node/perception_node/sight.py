@@ -13,7 +13,9 @@ from scene_graph import BlockPose, Place, base_name
 
 from .camera import PinholeCamera
 from .config import PerceptionConfig
+from .light import color_names
 from .masks import pixels_of
+from .names import mean_colors
 from .observation import Observation
 from .places import Places
 from .places.occlusion import box_part
@@ -73,7 +75,7 @@ def sight_problem(
                 f"what stands on {name} is higher than {config.column_height:g} m; set "
                 "column_height to the height of the highest tower"
             )
-    return _cut_off(segments)
+    return _cut_off(observation.rgb, segments)
 
 
 def _box(place: Place, lift: float, size: tuple[float, float, float]) -> BlockPose:
@@ -129,10 +131,10 @@ def _rays(
     return rows, columns, camera.rays_world(np.stack([columns, rows], axis=-1))
 
 
-def _cut_off(segments: Segments) -> str:
+def _cut_off(rgb: NDArray[np.uint8], segments: Segments) -> str:
     """A sentence about a block at the picture's edge, beyond which there may be more."""
-    for segment in segments:
-        part = segment.part
+    parts = [segment.part for segment in segments]
+    for index, part in enumerate(parts):
         for side, edge in (
             ("left", part[:, 0]),
             ("right", part[:, -1]),
@@ -140,9 +142,10 @@ def _cut_off(segments: Segments) -> str:
             ("lower", part[-1]),
         ):
             if edge.any():
+                color = color_names(mean_colors(rgb, parts))[index]
                 return (
-                    f"a block reaches the {side} edge of the picture, so it is not known what is "
-                    "beyond; turn the camera, or move it away"
+                    f"the {color} block reaches the {side} edge of the picture, so it is not known "
+                    "what is beyond; turn the camera, or move it away"
                 )
     return ""
 
