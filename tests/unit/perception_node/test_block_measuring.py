@@ -7,7 +7,7 @@ from itertools import pairwise
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from perception_scenes import Solid, cast, looking_camera, piled, tower
 
@@ -49,14 +49,16 @@ cuboids = st.tuples(edges, edges, edges)
 
 
 @settings(max_examples=30)
+@example(1, 4, 0.0, (0.00390625, 0.002728962579062854))  # 1.27 mm
 @given(st.integers(0, 2), st.integers(1, 7), st.floats(-0.7, 0.7), offsets)
 def test_cubes_of_one_size_are_measured_to_a_millimetre(
     place: int, height: int, yaw: float, offset: tuple[float, float]
 ) -> None:
     solids = tower(place, [BOX] * height, yaw, offset)
     blocks = measure(solids, [list(range(height))])
-    # Straight from in front one face is seen, and where it ends between two rows of pixels.
-    assert max(errors_of(blocks, solids)) < (1.0 if abs(yaw) > 0.05 else 1.2)
+    # Straight from in front one face is seen, and where it ends between two rows of pixels, which
+    # are 2.8 mm apart there: half of that cannot be told.
+    assert max(errors_of(blocks, solids)) < (1.0 if abs(yaw) > 0.05 else 1.4)
     for block in blocks:
         assert block.shape == BOX
         assert block.pose.yaw == pytest.approx(yaw, abs=0.02)
