@@ -10,6 +10,9 @@ import pytest
 from seen_worlds import LABELLED, PERCEPTION, TOWERS, observe, perceive, put
 
 from perception_node import Observation, Perception
+from perception_node.errors import BadImageError
+from perception_node.segment import Segments
+from perception_node.segment.checks import check_segments
 from scene_graph import GraphStatus
 from sim_node.layouts import random_layout
 from sim_node.world import World
@@ -49,6 +52,20 @@ def test_fault_13_colours_that_are_noise_are_said_to_be(
     for observation in observations:
         noise = rng.integers(0, 256, observation.rgb.shape).astype(np.uint8)
         assert "no common colour" in refusal(replace(observation, rgb=noise), perception)
+
+
+def test_two_blocks_under_one_label_are_named(observations: list[Observation]) -> None:
+    """As those that fell on one another may be, where depth tells of one thing."""
+    observation = observations[0]
+    assert observation.labels is not None
+    rgb, (label, *_) = observation.rgb.copy(), np.unique(observation.labels)[1:]
+    rows, columns = np.nonzero(observation.labels == label)
+    upper = rows <= np.median(rows)
+    rgb[rows, columns] = np.where(upper[:, None], (200, 30, 30), (30, 60, 190))
+    segments = Segments.from_labels(observation.labels, "camera/segmentation")
+    check_segments(observation.rgb, segments)
+    with pytest.raises(BadImageError, match="the red block and the blue block"):
+        check_segments(rgb, segments)
 
 
 def test_a_mirrored_picture_is_not_taken_for_other_blocks(observations: list[Observation]) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception_node.errors import BadImageError
+from perception_node.light import color_names
 from perception_node.quantiles import quantiles
 
 from .segments import Mask, Segments
@@ -68,6 +69,12 @@ def check_segments(
                 f"scattered; check {segments.source}, and that camera/image_raw {same_pixels}"
             )
         if _color_range(rgb[box][part]) > MAX_COLOR_RANGE:
+            if two := _two_colors(rgb[box][part]):
+                raise BadImageError(
+                    f"what label {segment.label} covers is {two[0]} and {two[1]}: the {two[0]} "
+                    f"block and the {two[1]} block may lie on one another; part them, or check "
+                    f"that camera/image_raw {same_pixels}"
+                )
             raise BadImageError(
                 f"the pixels of label {segment.label} have no common colour; check "
                 f"camera/image_raw, and that it {same_pixels}"
@@ -135,3 +142,22 @@ def _color_range(pixels: NDArray[np.uint8]) -> float:
     shares = np.sort(values / values.sum(axis=1, keepdims=True), axis=0)
     most = int(MOST * (len(shares) - 1))
     return float((shares[most:] - shares[: len(shares) - most]).min(axis=0).max())
+
+
+def _two_colors(pixels: NDArray[np.uint8]) -> tuple[str, ...]:
+    """The names of the two colours that pixels have, shape (n, 3); empty where they have others."""
+    values = pixels[:: max(1, len(pixels) // PIXELS)].astype(np.float32) + 1.0
+    shares = values / values.sum(axis=1, keepdims=True)
+    # It begins where the widest channel's ends are: the same pixels give the same answer.
+    widest = shares[:, np.ptp(shares, axis=0).argmax()]
+    first = (widest > np.median(widest)).astype(np.int32)[:, None]
+    until = (cv2.TERM_CRITERIA_MAX_ITER, 20, 0.0)
+    parted = cv2.kmeans(shares, 2, first, until, 1, cv2.KMEANS_USE_INITIAL_LABELS)[1].ravel()
+    parts = [values[parted == number] for number in range(2)]
+    if not all(len(part) for part in parts):
+        return ()
+    if max(_color_range((part - 1.0).astype(np.uint8)) for part in parts) > MAX_COLOR_RANGE:
+        return ()
+    medians = np.stack([np.median(part, axis=0) for part in parts]).astype(np.float64)
+    names = color_names((medians - 1.0) / 255.0)
+    return names if names[0] != names[1] else ()
