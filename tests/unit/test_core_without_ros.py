@@ -11,7 +11,7 @@ SOURCES = Path(__file__).parents[2] / "ros_ws" / "src"
 #: Where messages may be met: the node's wiring, what turns messages into values, and clients.
 ROS_PARTS = (
     *("node", "conversions", "parameters", "executable", "cli", "messages"),
-    *("image_client", "latent_view", "plan_publisher", "topics", "camera_topics"),
+    *("image_client", "latent_view", "plan_publisher", "topics", "camera_topics", "view_requests"),
     "trajectory_topics",
 )
 #: Packages that are ROS throughout, but for the modules named.
