@@ -2,7 +2,7 @@
 """Room for pictures in the shared memory of a process that publishes them.
 
 A picture of 640x480 is larger than all that Fast DDS has unless it is told otherwise, and goes
-through it piece by piece: colours and depth took 20 ms, and many were lost; now they take 5 ms.
+through it piece by piece: reliable ones arrive late, best-effort ones often not at all.
 """
 
 from __future__ import annotations
