@@ -7,7 +7,7 @@ from itertools import pairwise
 import cv2
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from perception_scenes import Solid, cast, looking_camera, piled, tower
 
@@ -48,17 +48,24 @@ edges = st.floats(0.03, 0.06)
 cuboids = st.tuples(edges, edges, edges)
 
 
-@settings(max_examples=30)
-@example(1, 4, 0.0, (0.00390625, 0.002728962579062854))  # 1.27 mm
+@settings(max_examples=30, derandomize=True)
 @given(st.integers(0, 2), st.integers(1, 7), st.floats(-0.7, 0.7), offsets)
 def test_cubes_of_one_size_are_measured_to_a_millimetre(
     place: int, height: int, yaw: float, offset: tuple[float, float]
 ) -> None:
+    check_cubes(place, height, yaw, offset)
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="the second of four is 1.27 mm off")
+def test_a_tower_straight_from_in_front_is_measured_to_a_millimetre() -> None:
+    check_cubes(1, 4, 0.0, (0.00390625, 0.002728962579062854))
+
+
+def check_cubes(place: int, height: int, yaw: float, offset: tuple[float, float]) -> None:
     solids = tower(place, [BOX] * height, yaw, offset)
     blocks = measure(solids, [list(range(height))])
-    # Straight from in front one face is seen, and where it ends between two rows of pixels, which
-    # are 2.8 mm apart there: half of that cannot be told.
-    assert max(errors_of(blocks, solids)) < (1.0 if abs(yaw) > 0.05 else 1.4)
+    # Straight from in front one face is seen, and where it ends between two rows of pixels.
+    assert max(errors_of(blocks, solids)) < (1.0 if abs(yaw) > 0.05 else 1.2)
     for block in blocks:
         assert block.shape == BOX
         assert block.pose.yaw == pytest.approx(yaw, abs=0.02)

@@ -65,18 +65,27 @@ def test_a_block_of_another_colour_among_others_is_called_unknown(
     assert "the colour of unknown_box, (" in names.doubt
 
 
-# In warmer light (0.703 of blue) cyan is read as mint among some others: see what eval-perception
-# measures.
 @settings(derandomize=True)
 @given(
-    st.permutations(tuple(COLORS)), st.floats(0.85, 1.1), st.floats(0.75, 1.2), st.floats(0.75, 1.2)
+    st.permutations(tuple(COLORS)), st.floats(0.85, 1.1), st.floats(0.75, 1.2), st.floats(0.7, 1.25)
 )
 def test_all_colours_are_named_in_warm_and_cool_light(
     order: list[str], exposure: float, red: float, blue: float
 ) -> None:
+    assert named(order[:6], exposure, red, blue) == tuple(order[:6])
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="cyan is read as mint")
+def test_cyan_is_named_in_the_warmest_of_these_lights() -> None:
+    order = ["red", "green", "orange", "yellow", "brown", "cyan"]
+    assert named(order, 0.875, 1.0, 0.703125) == tuple(order)
+
+
+def named(order: list[str], exposure: float, red: float, blue: float) -> tuple[str, ...]:
+    """What colours are called in a light."""
     light = exposure * np.array([red, 1.0, blue])
-    colors = np.minimum(np.array([COLORS[name] for name in order[:6]]) * 0.9 * light, 1.0)
-    assert explain_colors(colors).names == tuple(order[:6])
+    colors = np.minimum(np.array([COLORS[name] for name in order]) * 0.9 * light, 1.0)
+    return explain_colors(colors).names
 
 
 # In warmer light lavender is read as grey: see what eval-perception measures.
