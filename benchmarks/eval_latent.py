@@ -10,18 +10,16 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import torch
 from latent.bench import TEST_SEED, open_bench
 from latent.blocks_world import BlocksWorld, DataError, read_set
 from latent.codes_measured import encoder_rows
 from latent.figures import noise_curves, noise_picture, plan_picture, saved
 from latent.measure import cold_rows, learnt_rows, observed_rows, prediction_rows, sample_plans
+from latent.seeds import together
 from latent.trainings import ENCODER
 from results_file import Row, print_rows, quick, write_result
 
@@ -100,32 +98,6 @@ def pictures(folder: Path, sets: dict[str, BlocksWorld]) -> list[dict[str, str]]
             "Plans of the learnt action model M2, as their codes show them (Figures 4.1 and 4.8).",
         ),
     ]
-
-
-def together(of_seeds: Sequence[Sequence[Row]]) -> list[Row]:
-    """The mean of each row over seeds; with several, the spread is that of the seeds."""
-    if len(of_seeds) == 1:
-        return list(of_seeds[0])
-    rows = []
-    for row in of_seeds[0]:
-        same = [
-            other
-            for seed in of_seeds
-            for other in seed
-            if (other.set, other.metric) == (row.set, row.metric)
-        ]
-        values = [other.value for other in same]
-        rows.append(
-            replace(
-                row,
-                value=float(np.mean(values)),
-                spread=(min(values), max(values)),
-                note="; ".join(
-                    filter(None, [f"{len(values)} seeds: " + ", ".join(f"{v:.4g}" for v in values)])
-                ),
-            )
-        )
-    return rows
 
 
 if __name__ == "__main__":

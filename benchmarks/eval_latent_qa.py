@@ -10,13 +10,17 @@ import argparse
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+import numpy as np
 import torch
 from latent.blocks_world import DataError
-from latent.clevr.dataset import read_clevr
+from latent.clevr.dataset import ClevrSet, read_clevr
+from latent.linear_reader import words_named_right
 from latent.qa_training import (
+    Answers,
     baseline_rows,
     gain_rows,
     linear_rows,
@@ -26,7 +30,9 @@ from latent.qa_training import (
     train_qa,
     train_reader,
 )
+from latent.seeds import together
 from latent.trainings import StoppedError
+from numpy.typing import NDArray
 from results_file import Row, print_rows, write_result
 
 from perception_node.errors import PerceptionError
@@ -61,39 +67,68 @@ def main() -> int:
 
 
 def measure(options: argparse.Namespace) -> list[Row]:
-    """Trains and measures every setting and size that was asked for."""
+    """Trains and measures every setting, size and seed that was asked for."""
     train, test = (read_clevr(options.data / f"clevr_{name}") for name in ("train", "test"))
-    rows = baseline_rows(train, test)
-    config = ReaderConfig(options.answerer, epochs=options.reader_epochs, seed=options.seed)
-    reader = train_reader(options.runs / f"reader_{options.answerer}_{options.seed}", train, config)
-    rows += reader_rows(reader, test)
+    of_seeds = [_of_seed(options, seed, train, test) for seed in options.seeds]
+    rows = baseline_rows(train, test) + together([seed.rows for seed in of_seeds])
+    for channels in options.channels:
+        right, named = (
+            {setting: [getattr(seed, what)[setting, channels] for seed in of_seeds]
+             for setting in options.settings}
+            for what in ("right", "named")
+        )  # fmt: skip
+        rows += gain_rows(right, channels, owners_of(test))
+        rows += linear_rows(named, channels, of_seeds[0].things)
+    return rows
+
+
+@dataclass
+class _Seed:
+    """What one seed gave.
+
+    Attributes:
+        rows: of its answerer, and of each setting and size.
+        right: by setting and size, which questions were answered right.
+        named: by the same, which words of things a linear reader named right.
+        things: the scene of each thing.
+    """
+
+    rows: list[Row]
+    right: dict[tuple[str, int], Answers] = field(default_factory=dict)
+    named: dict[tuple[str, int], Answers] = field(default_factory=dict)
+    things: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+
+
+def _of_seed(options: argparse.Namespace, seed: int, train: ClevrSet, test: ClevrSet) -> _Seed:
+    config = ReaderConfig(options.answerer, epochs=options.reader_epochs, seed=seed)
+    reader = train_reader(options.runs / f"reader_{options.answerer}_{seed}", train, config)
+    found = _Seed(reader_rows(reader, test))
+
+    def trained(setting: str, start: QaTrainer | None, encoder: EncoderConfig) -> QaTrainer:
+        epochs = EPOCHS | dict(options.epochs)
+        config = QaConfig(
+            encoder,
+            setting,
+            epochs=epochs.get(f"{setting}@{encoder.channels}", epochs[setting]),
+            learning_rate=FURTHER_RATE if start else QaConfig.learning_rate,
+            seed=seed,
+        )
+        name = f"{setting}_{encoder.channels}_{options.answerer}_{seed}"
+        return train_qa(options.runs / name, config, reader, start)
+
     for channels in options.channels:
         encoder = EncoderConfig(options.quantiser, channels, options.width)
-
-        def trained(setting: str, start: QaTrainer | None, encoder: EncoderConfig) -> QaTrainer:
-            epochs = EPOCHS | dict(options.epochs)
-            config = QaConfig(
-                encoder,
-                setting,
-                epochs=epochs.get(f"{setting}@{encoder.channels}", epochs[setting]),
-                learning_rate=FURTHER_RATE if start else QaConfig.learning_rate,
-                seed=options.seed,
-            )
-            name = f"{setting}_{encoder.channels}_{options.answerer}_{options.seed}"
-            return train_qa(options.runs / name, config, reader, start)
-
-        encoders, right = {}, {}
         for setting in options.settings:
             # The reader cannot be asked of what shows nothing yet: the others go on from there.
             alone = setting == "reconstruction"
             start = None if alone else trained("reconstruction", None, encoder)
             trainer = trained(setting, start, encoder)
-            found, right[setting] = qa_rows(trainer, test)
-            encoders[setting] = trainer.encoder
-            rows += found
-        rows += gain_rows(right, channels, owners_of(test))
-        rows += linear_rows(encoders, channels, train, test)
-    return rows
+            rows, found.right[setting, channels] = qa_rows(trainer, test)
+            found.named[setting, channels], found.things = words_named_right(
+                trainer.encoder, train, test
+            )
+            found.rows += rows
+    return found
 
 
 def _epochs(text: str) -> tuple[str, int]:
@@ -135,7 +170,9 @@ def _parse() -> argparse.Namespace:
     )
     parser.add_argument("--reader-epochs", type=int, default=14, help="of the answerer's")
     parser.add_argument("--threads", type=int, default=2, help="processor threads")
-    parser.add_argument("--seed", type=int, default=0, help="of weights and batches")
+    parser.add_argument(
+        "--seeds", nargs="+", type=int, default=[0, 1, 2], help="of weights and batches"
+    )
     return parser.parse_args()
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -29,11 +29,13 @@ from .clevr.asked import (
 )
 from .clevr.dataset import ClevrSet
 from .clevr.things import ATTRIBUTES
-from .linear_reader import words_named_right
 from .progress import progress
+from .seeds import told
 from .stability import reconstruction_error
 from .trainings import CHECKPOINT, StoppedError
 
+#: What was right of what was asked.
+Answers = NDArray[np.bool_]
 #: Thesis, Table 4.1: QA accuracy and reconstruction error, and what is required of them here.
 TABLE: Final[dict[str, tuple[float, float, str | None, str | None]]] = {
     "kl": (0.932923, 0.118789, ">= 0.955", None),
@@ -110,8 +112,8 @@ def reader_rows(reader: ReaderTrainer, test: ClevrSet) -> list[Row]:
     answerer, seconds = reader.answerer, np.round(reader.seconds)
     views = len(SHIFTS) * len(reader.reader.ways)
     questions = len(reader.batches.asked.questions)
-    told = f"in {views} views; {seconds} s of training on {questions} questions"
-    row, _ = _answers_row("images", "from images", None, reader.reader, reader.config, test, told)
+    note = f"in {views} views; {seconds} s of training on {questions} questions"
+    row, _ = _answers_row("images", "from images", None, reader.reader, reader.config, test, note)
     rows = [row]
     if isinstance(answerer, ProgramNetwork):
         name = "symbolic execution on the graph read off images"
@@ -120,7 +122,7 @@ def reader_rows(reader: ReaderTrainer, test: ClevrSet) -> list[Row]:
     return rows
 
 
-def qa_rows(trainer: QaTrainer, test: ClevrSet) -> tuple[list[Row], NDArray[np.bool_]]:
+def qa_rows(trainer: QaTrainer, test: ClevrSet) -> tuple[list[Row], Answers]:
     """A line of Table 4.1, families in its note, and which questions were answered right."""
     config = trainer.config
     label = f"{config.setting}, o = {config.encoder.channels}"
@@ -133,89 +135,94 @@ def qa_rows(trainer: QaTrainer, test: ClevrSet) -> tuple[list[Row], NDArray[np.b
     if full:
         row = replace(row, required=bound, thesis=accuracy)
     alone = config.setting == "reconstruction"
-    told = f"{config.epochs} epochs, {np.round(trainer.seconds)} s of training, " + (
+    note = f"{config.epochs} epochs, {np.round(trainer.seconds)} s of training, " + (
         "read by the answerer of images as it is"
         if alone
         else "encoder and answerer going on from reconstruction and from images"
     )
     error_row = Row(
         label, "reconstruction error", found, "", len(test.images),
-        required=error_bound if full else None, thesis=error if full else None, note=told,
+        required=error_bound if full else None, thesis=error if full else None, note=note,
     )  # fmt: skip
     return [row, error_row], right
 
 
 def gain_rows(
-    right: Mapping[str, NDArray[np.bool_]], channels: int, owners: NDArray[np.int64]
+    right: Mapping[str, Sequence[Answers]], channels: int, owners: NDArray[np.int64]
 ) -> list[Row]:
     """By how much each setting answers better than reconstruction only, question by question.
 
     A bound is asked of codes of :data:`TABLE_CHANNELS` only; the others belong to Figure 4.9.
 
     Args:
-        right: by setting, which questions were answered right; without reconstruction only, no row.
+        right: by setting, of each seed which questions were answered right; without reconstruction
+            only, no row.
         channels: o.
         owners: the scene of each question.
     """
     metric = "QA accuracy above reconstruction only, low end"
     required = "> 0" if channels in TABLE_CHANNELS else None
-    return [
-        replace(gain_row(f"{setting}, o = {channels}", metric, mine, others, owners),
-                required=required)
-        for setting, mine, others in _beside_reconstruction(right)
-    ]  # fmt: skip
+    rows = _gains(right, channels, metric, owners)
+    return [replace(row, required=required) for row in rows]
 
 
 def linear_rows(
-    encoders: Mapping[str, StateEncoder], channels: int, train: ClevrSet, test: ClevrSet
+    right: Mapping[str, Sequence[Answers]], channels: int, things: NDArray[np.int64]
 ) -> list[Row]:
-    """How easily the codes of each setting are read, and against reconstruction only."""
-    rows, right, owners = [], {}, np.zeros(0, np.int64)
-    for setting, encoder in encoders.items():
-        found, things = words_named_right(encoder, train, test)
-        right[setting], owners = found.ravel(), np.repeat(things, found.shape[1])
+    """How easily the codes of each setting are read, and against reconstruction only.
+
+    Args:
+        right: by setting, of each seed which words were named right, shape (things, attributes).
+        channels: o.
+        things: the scene of each thing.
+    """
+    rows = []
+    for setting, of_seeds in right.items():
+        found = np.mean(of_seeds, 0)
         shares = ", ".join(f"{n} {v:.3f}" for n, v in zip(ATTRIBUTES, found.mean(0)))
-        rows.append(
-            Row(f"{setting}, o = {channels}", "words of things named right by a linear reader",
-                float(found.mean()), "", found.size, note=f"of frozen codes; {shares}")
-        )  # fmt: skip
+        values = [float(of_seed.mean()) for of_seed in of_seeds]
+        note = f"of frozen codes; {shares}"
+        row = Row(f"{setting}, o = {channels}", "words of things named right by a linear reader",
+                  float(found.mean()), "", found.size, note=note)  # fmt: skip
+        if len(values) > 1:
+            spread = (min(values), max(values))
+            row = replace(row, spread=spread, note=f"{note}; {told(values)}")
+        rows.append(row)
     metric = "words named right by a linear reader above reconstruction only, low end"
-    return rows + [
-        gain_row(f"{setting}, o = {channels}", metric, mine, others, owners)
-        for setting, mine, others in _beside_reconstruction(right)
-    ]
+    flat = {name: [item.ravel() for item in of_seeds] for name, of_seeds in right.items()}
+    count = len(ATTRIBUTES)
+    return rows + _gains(flat, channels, metric, np.repeat(things, count))
 
 
-def gain_row(
-    label: str,
+def _gains(
+    right: Mapping[str, Sequence[Answers]],
+    channels: int,
     metric: str,
-    right: NDArray[np.bool_],
-    others: NDArray[np.bool_],
     owners: NDArray[np.int64],
-) -> Row:
-    """By how much more is right than of others; what is of one owner fails together."""
-    gain = right.astype(np.float64) - others
-    mean = float(gain.mean())
-    of_scenes = np.bincount(owners, gain - mean)
-    half = 1.96 * float(np.sqrt((of_scenes**2).sum())) / len(gain)
-    return Row(
-        label, metric, mean - half, "", len(gain), (mean - half, mean + half),
-        note=f"{mean:+.4f}, 95% interval over scenes",
-    )  # fmt: skip
+) -> list[Row]:
+    """Of each setting against reconstruction only, in the mean of the seeds.
+
+    What is of one owner fails together; the interval is over owners.
+    """
+    others, rows = right.get("reconstruction"), []
+    for setting, mine in right.items():
+        if others is None or setting == "reconstruction":
+            continue
+        of_seeds = np.asarray(mine, np.float64) - np.asarray(others, np.float64)
+        gain = of_seeds.mean(0)
+        mean = float(gain.mean())
+        half = 1.96 * float(np.sqrt((np.bincount(owners, gain - mean) ** 2).sum())) / len(gain)
+        note = f"{mean:+.4f}, 95% interval over scenes"
+        if len(of_seeds) > 1:
+            note += f", mean of {told(of_seeds.mean(1).tolist(), '+.4f')}"
+        rows.append(Row(f"{setting}, o = {channels}", metric, mean - half, "", len(gain),
+                        (mean - half, mean + half), note=note))  # fmt: skip
+    return rows
 
 
 def owners_of(test: ClevrSet) -> NDArray[np.int64]:
     """The scene of each question."""
     return np.repeat(np.arange(len(test.images)), [len(items) for items in test.questions])
-
-
-def _beside_reconstruction(
-    right: Mapping[str, NDArray[np.bool_]],
-) -> list[tuple[str, NDArray[np.bool_], NDArray[np.bool_]]]:
-    others = right.get("reconstruction")
-    if others is None:
-        return []
-    return [(name, mine, others) for name, mine in right.items() if name != "reconstruction"]
 
 
 def _answers_row(
@@ -226,14 +233,12 @@ def _answers_row(
     config: ReaderConfig,
     test: ClevrSet,
     note: str = "",
-) -> tuple[Row, NDArray[np.bool_]]:
+) -> tuple[Row, Answers]:
     vocabulary = Vocabulary(config.words, config.answers)
     asked, questions = asked_of(test, vocabulary, told_to(config.answerer)), all_questions(test)
     numbers = answered(encoder, answerer, asked)
     share, families = shares_right([vocabulary.answers[n] for n in numbers], questions)
-    told = [f"{name} {value:.3f}" for name, value in families.items()]
+    notes = [f"{name} {value:.3f}" for name, value in families.items()] + [note] * bool(note)
     metric = f"QA accuracy, {what} ({config.answerer})"
-    row = Row(
-        label, metric, share, "", len(questions), note="; ".join([*told, note] if note else told)
-    )
+    row = Row(label, metric, share, "", len(questions), note="; ".join(notes))
     return row, numbers == asked.answers

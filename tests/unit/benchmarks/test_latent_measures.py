@@ -80,8 +80,8 @@ def test_pairs_are_of_different_states() -> None:
 
 def test_questions_about_one_scene_count_as_failing_together() -> None:
     right = {
-        "kl": np.ones(4, np.bool_),
-        "reconstruction": np.array([False, False, True, True]),
+        "kl": [np.ones(4, np.bool_)],
+        "reconstruction": [np.array([False, False, True, True])],
     }
     owners = np.array([0, 0, 1, 1])
     (row,) = gain_rows(right, 64, owners)
@@ -90,6 +90,16 @@ def test_questions_about_one_scene_count_as_failing_together() -> None:
     assert row.value == pytest.approx(0.5 - half) and row.holds is False
     assert [row.holds for row in gain_rows(right, 8, owners)] == [None]
     assert gain_rows({"kl": right["kl"]}, 64, owners) == []
+
+
+def test_of_several_seeds_each_question_counts_once() -> None:
+    owners = np.array([0, 0, 1, 1])
+    one, other = np.ones(4, np.bool_), np.array([True, True, False, False])
+    right = {"kl": [one, one], "reconstruction": [other, ~other]}
+    (row,) = gain_rows(right, 64, owners)
+    # In the mean of the seeds each question gains a half: no scene is above another one.
+    assert row.spread == pytest.approx((0.5, 0.5)) and row.n == 4 and row.holds
+    assert row.note is not None and row.note.endswith("2 seeds: +0.5000, +0.5000")
 
 
 def painted(scenes: int, seed: int) -> ClevrSet:

@@ -152,15 +152,18 @@ class SimulatedArm:
         fingers_stuck_at: where the fingers stay [m]; negative: they obey.
         trembling: by how much its joints differ from one state to the next [rad].
         slowness: seconds of this machine a second of the arm's.
-        lag: how long a trajectory is on its way [s].
-        sent: the trajectories, and the joints when each arrived.
+        lag: how long the arm takes to set out [s].
+        travels: how long a trajectory is on its way to the controller [s].
+        sent: the trajectories, and the joints when each was sent.
+        refused: how many of them it did not take.
     """
 
     PERIOD = 0.02
 
     def __init__(self) -> None:
         self.silent = self.deaf = self.stuck = self.frozen_clock = False
-        self.block, self.slowness, self.trembling, self.lag = HALF_BLOCK, 1.0, 0.0, 0.0
+        self.block, self.slowness, self.trembling = HALF_BLOCK, 1.0, 0.0
+        self.lag, self.travels, self.refused = 0.0, 0.0, 0
         self.sent: list[tuple[Trajectory, JointValues]] = []
         self.joints = self._seen = JointValues(HOME_Q.copy(), np.full(2, OPEN))
         self.frozen, self.fingers_stuck_at, self.cut_at = False, -1.0, 0.0
@@ -216,14 +219,25 @@ class SimulatedArm:
 
     # The controller
 
-    def send(self, trajectory: Trajectory, _begins: float | None = None) -> None:
+    def send(self, trajectory: Trajectory, begins: float | None = None) -> None:
         self.sent.append((trajectory, self.joints))
-        jump = float(np.abs(trajectory.positions.arm[0] - self.joints.arm).max())
+        if self.travels:
+            arrives = self._stamp + self.travels
+            self.when(lambda: self._stamp >= arrives, lambda: self._arrive(trajectory, begins))
+        else:
+            self._arrive(trajectory, None)
+
+    def _arrive(self, trajectory: Trajectory, begins: float | None) -> None:
+        """Begins now, or is joined where it should be by now."""
+        began = self._stamp if begins is None else begins
+        target = trajectory.sample(self._stamp - began)[0]
+        jump = float(np.abs(target.arm - self.joints.arm).max())
         if self.deaf or jump > 0.1:
+            self.refused += 1
             return
         if self.cut_at > 0.0:
             trajectory, self.cut_at = trajectory.cut(0.0, self.cut_at), 0.0
-        self._following, self._began = trajectory, self._stamp + self.lag
+        self._following, self._began = trajectory, began + self.lag
 
     def _tick(self) -> None:
         self._time += self.PERIOD * self.slowness

@@ -89,6 +89,22 @@ def test_what_was_moved_is_corrected_once_and_without_standing(
     assert progress == sorted(progress)
 
 
+def test_a_correction_that_comes_late_is_joined_where_it_should_be(bench: Corrected) -> None:
+    """On a busy machine; begun at its first point the arm would jump, and its driver refuse it."""
+
+    def busy() -> None:
+        bench.moved.update(blue_box=(0.53, 0.1, 0.02))
+        bench.arm.travels = 0.16
+
+    bench.when(PICK, 1, busy)
+    assert bench.carry_out(WATCHED).state is MotionState.SUCCEEDED
+    (_, _), (corrected, joints) = bench.arm.sent
+    speed = np.abs(corrected.velocities.arm[0]).max()
+    assert speed * bench.arm.travels > 0.1
+    assert np.abs(corrected.positions.arm[0] - joints.arm).max() < 0.05
+    assert not bench.arm.refused
+
+
 def test_of_several_moves_each_is_corrected(bench: Corrected) -> None:
     bench.when(PICK, 0, lambda: bench.moved.update(blue_box=(0.53, 0.1, 0.02)))
     bench.when(PLACE, 0, lambda: bench.moved.update(blue_box=(0.53, 0.13, 0.02)))

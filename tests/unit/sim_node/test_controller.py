@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicHermiteSpline
 
 from sim_node.controller import ArmController
 from sim_node.simulated_arms import PANDA
@@ -77,6 +78,33 @@ def test_a_trajectory_begins_at_its_step_and_not_before(world: World) -> None:
     assert world.joint_state()[0] == pytest.approx(HOME, abs=2e-3)
     reach(world, arm, 1.5)
     assert world.joint_state()[0] == pytest.approx(goal, abs=5e-3)
-    with pytest.raises(TrajectoryError, match="was to start 2 s ago"):
-        arm.follow(JOINTS, np.array([0.0]), np.array([goal]), None, begins - 120)
+    with pytest.raises(TrajectoryError, match=r"it ended 1\.5 s ago"):
+        arm.follow(JOINTS, np.array([0.0, 0.5]), np.array([goal, goal]), None, begins - 120)
+    assert not arm.moving
+
+
+def test_a_trajectory_that_has_begun_is_joined_in_its_midst_if_the_arm_is_there(
+    world: World,
+) -> None:
+    world.reset((("red_box",), (), ()))
+    arm = ArmController(world)
+    goal = HOME + [0.5, *[0.0] * 8]
+    times, way, began = np.array([0.0, 2.0]), np.array([HOME, goal]), world.steps
+    arm.follow(JOINTS, times, way, np.zeros((2, 9)))
+    reach(world, arm, 1.0)
+    # The rest of the same way, cut where the arm was half a second ago; so late it comes.
+    before, rate = CubicHermiteSpline(times, way, np.zeros((2, 9))), np.zeros((2, 9))
+    rate[0] = before(0.5, 1)
+    rest = np.array([before(0.5), goal])
+    begins = began + round(0.5 / world.timestep)
+    with pytest.raises(TrajectoryError, match="joint1 would jump"):
+        arm.follow(JOINTS, np.array([0.0, 1.5]), rest, rate)
+    arm.follow(JOINTS, np.array([0.0, 1.5]), rest, rate, begins)
+    assert arm.target()[0] == pytest.approx(before(1.0), abs=0.01)
+    assert reach(world, arm, 1.5) < 0.02
+    assert world.joint_state()[0] == pytest.approx(goal, abs=5e-3)
+
+    with pytest.raises(TrajectoryError, match=r"to start 1 s ago, and .*joint1 would jump"):
+        late = world.steps - round(1.0 / world.timestep)
+        arm.follow(JOINTS, np.array([0.0, 2.0]), way[::-1], None, late)
     assert not arm.moving

@@ -72,10 +72,17 @@ def sighting_from_message(message: PlanSightingMsg) -> PlanSighting:
     )
 
 
-def trajectory_to_message(trajectory: Trajectory, arm: Arm) -> JointTrajectory:
-    """Names all joints; the stamp stays zero, which asks the controller to start at once."""
+def trajectory_to_message(
+    trajectory: Trajectory, arm: Arm, begins: float | None = None
+) -> JointTrajectory:
+    """Names all joints.
+
+    Args:
+        begins: when it starts, or has started, by the clock of the controller [s]; None: at once.
+    """
     positions, velocities = trajectory.positions.joined(), trajectory.velocities.joined()
-    return _message(arm.joint_names, trajectory.times, positions, velocities)
+    message = _message(arm.joint_names, trajectory.times, positions, velocities)
+    return _stamped(message, begins)
 
 
 def trajectory_to_two_messages(
@@ -87,14 +94,16 @@ def trajectory_to_two_messages(
         begins: when it starts, by the clock of the controllers [s]; None: at once.
     """
     times, positions, velocities = trajectory.times, trajectory.positions, trajectory.velocities
-    messages = (
-        _message(arm.arm_joints, times, positions.arm, velocities.arm),
-        _message(arm.gripper.finger_joints, times, positions.fingers, velocities.fingers),
-    )
+    own = _message(arm.arm_joints, times, positions.arm, velocities.arm)
+    fingers = _message(arm.gripper.finger_joints, times, positions.fingers, velocities.fingers)
+    return _stamped(own, begins), _stamped(fingers, begins)
+
+
+def _stamped(message: JointTrajectory, begins: float | None) -> JointTrajectory:
+    """With a stamp of zero a controller starts at once."""
     if begins is not None:
-        for message in messages:
-            message.header.stamp = stamp_from_nanoseconds(round(begins * 1e9))
-    return messages
+        message.header.stamp = stamp_from_nanoseconds(round(begins * 1e9))
+    return message
 
 
 def _message(

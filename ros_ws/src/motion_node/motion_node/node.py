@@ -270,7 +270,7 @@ class MotionNode(Node):
         if not self.context.ok():
             return
         if self._gripper is None:
-            self._trajectories.publish(trajectory_to_message(trajectory, self._arm))
+            self._trajectories.publish(trajectory_to_message(trajectory, self._arm, begins))
             return
         arm, fingers = trajectory_to_two_messages(trajectory, self._arm, begins)
         self._gripper.publish(fingers)  # first: fingers that are to go on holding shall know

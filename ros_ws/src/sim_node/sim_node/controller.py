@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .playback import Playback
-from .trajectory import JointLimits, Trajectory, TrajectoryError
+from .trajectory import JointLimits, Trajectory, TrajectoryError, check_jump
 from .world import World
 
 
@@ -51,8 +51,8 @@ class CommandsMotors(Protocol):
 class ArmController:
     """Sends the sampled trajectory to the world's motors, one command a physics step.
 
-    One controller of all joints, the fingers included, and of this project's own rules: a
-    belated trajectory is refused, one without points stops the arm.
+    One controller of all joints, the fingers included, and of this project's own rules: one
+    without points stops the arm. A belated trajectory is taken up where it should be by now.
     """
 
     def __init__(self, world: World) -> None:
@@ -83,24 +83,25 @@ class ArmController:
 
         Args:
             begins: the step of the physics at which it starts; the arm holds still until then.
-                None: now.
+                One that has passed: it is taken up in its midst. None: now.
 
         Raises:
             TrajectoryError: if it is refused; the running one goes on.
         """
-        start, _, _ = self._world.joint_state()
-        trajectory = Trajectory(
-            names, times, positions, velocities, self.limits, start, self._world.arm.start_tolerance
-        )
-        now = self._world.steps
-        if begins is not None and begins < now:
-            late = (now - begins) * self._world.timestep
-            raise TrajectoryError(f"it was to start {late:.3g} s ago")
-        if begins is not None and begins > now:
+        state, _, _ = self._world.joint_state()
+        now, tolerance = self._world.steps, self._world.arm.start_tolerance
+        begins = now if begins is None else begins
+        late = (now - begins) * self._world.timestep
+        first = tolerance if late <= 0.0 else np.full(len(tolerance), np.inf)
+        trajectory = Trajectory(names, times, positions, velocities, self.limits, state, first)
+        playback = Playback(trajectory, begins, self._world.timestep)
+        if late > 0.0:
+            if late > trajectory.duration:
+                raise TrajectoryError(f"it ended {late - trajectory.duration:.3g} s ago")
+            check_jump(playback.target(now)[0], state, tolerance, self.limits.names, late)
+        if begins > now:
             self._hold_still()
-        self._playback = Playback(
-            trajectory, now if begins is None else begins, self._world.timestep
-        )
+        self._playback = playback
         return trajectory
 
     def stop(self) -> None:

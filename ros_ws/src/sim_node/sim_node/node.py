@@ -73,8 +73,9 @@ class SimNode(Node):
         diagnostics (diagnostic_msgs/DiagnosticArray): that it lives; a second simulator is noticed
     Subscribes:
         joint_trajectory (trajectory_msgs/JointTrajectory): replaces the running one, at once or at
-            the time of its stamp; a malformed or belated one is refused with a logged reason; one
-            without points stops the arm. With gripper_apart it commands the arm's joints alone, by
+            the time of its stamp, and joined in its midst where that has passed; one that is
+            malformed, over, or far from the arm is refused with a logged reason; one without points
+            stops the arm. With gripper_apart it commands the arm's joints alone, by
             the rules of ros2_control's joint_trajectory_controller
         gripper_trajectory (trajectory_msgs/JointTrajectory), with gripper_apart: the fingers, by
             the same rules

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from .controller import FollowsTrajectories
 from .playback import Playback
 from .stock_rules import check_stock_rules
-from .trajectory import JointLimits, Trajectory, TrajectoryError
+from .trajectory import JointLimits, Trajectory, check_jump
 from .world import World
 
 Array = NDArray[np.float64]
@@ -84,19 +84,9 @@ class StockController:
         unheld = np.full(len(self.joints), np.inf)
         trajectory = Trajectory(names, times, positions, velocities, self._limits, state, unheld)
         playback = Playback(trajectory, now if begins is None else begins, world.timestep)
-        self._check_jump(playback.target(now)[0], state, max(0.0, -lead))
+        check_jump(playback.target(now)[0], state, self._tolerance, self.joints, max(0.0, -lead))
         self._playback = playback
         return trajectory
-
-    def _check_jump(self, target: Array, state: Array, late: float) -> None:
-        away = np.abs(target - state)
-        if (away > self._tolerance).any():
-            joint = int(np.argmax(away / self._tolerance))
-            when = f"it was to start {late:.3g} s ago, and " if late > 0.0 else ""
-            raise TrajectoryError(
-                f"{when}{self.joints[joint]} would jump by {away[joint]:.3f} (allowed: "
-                f"{self._tolerance[joint]:.3f})"
-            )
 
     def stop(self) -> None:
         """A trajectory without points stops nothing.

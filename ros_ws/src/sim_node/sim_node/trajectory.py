@@ -115,6 +115,32 @@ class Trajectory:
         return np.where(inside, positions, ends), np.where(inside, velocities, 0.0)
 
 
+def check_jump(
+    target: NDArray[np.float64],
+    state: NDArray[np.float64],
+    tolerance: NDArray[np.float64],
+    names: Sequence[str],
+    late: float,
+) -> None:
+    """Whether joints can go over to a trajectory where they are; arrays have shape (n,) [rad, m].
+
+    Args:
+        target: where the trajectory has them now.
+        late: how long ago it was to start; not positive: it was not [s].
+
+    Raises:
+        TrajectoryError: if one of them would jump.
+    """
+    away = np.abs(target - state)
+    if (away > tolerance).any():
+        joint = int(np.argmax(away / tolerance))
+        when = f"it was to start {late:.3g} s ago, and " if late > 0.0 else ""
+        raise TrajectoryError(
+            f"{when}{names[joint]} would jump by {away[joint]:.3f} (allowed: "
+            f"{tolerance[joint]:.3f})"
+        )
+
+
 def _check_names(names: Sequence[str], expected: tuple[str, ...]) -> None:
     if unknown := sorted(set(names) - set(expected)):
         raise TrajectoryError(f"unknown joints: {', '.join(unknown)}")

@@ -183,7 +183,9 @@ class Follower:
                 "the arm has moved while its motion was optimised; let it rest, and ask again",
                 recoverable=True,
             )
-        begins = in_step = None
+        # What replaces another under way is joined where it should be when it arrives.
+        begins = state.stamp if moving and state.stamped else None
+        in_step = None
         watched, stepping = self.settings.monitor, self.settings.in_step
         if stepping:
             begins = first_moment(self._arm, state, patience, self._missing, self.settings)
