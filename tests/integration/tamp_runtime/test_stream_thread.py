@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -89,6 +90,48 @@ def test_no_executor_waits_for_it(listener: Listener) -> None:
         assert set(events) <= set(listener.node.waitables)
         for waited_for in (subscription, *events):
             assert not waited_for.callback_group.can_execute(waited_for)
+
+
+def test_several_subscriptions_are_heard_one_message_at_a_time(ros_context: Any) -> None:
+    node = Node("listener", context=ros_context.context)
+    source = ros_context.add(Node("source", context=ros_context.context))
+    topics = [source.create_publisher(Clock, name, RELIABLE) for name in ("one", "two", "late")]
+    stream, heard, running = StreamThread(node, "several"), set[str](), threading.Lock()
+    alone: list[bool] = []
+
+    def hear(topic: str) -> None:
+        def on_message(_message: Clock, _info: dict[str, Any]) -> None:
+            alone.append(running.acquire(blocking=False))
+            heard.add(topic)
+            running.release()
+
+        stream.hear(node.create_subscription(Clock, topic, print, RELIABLE), on_message)
+
+    def arrive(names: set[str]) -> None:
+        def all_heard() -> bool:
+            for topic in topics:
+                topic.publish(Clock())
+            return heard >= names
+
+        ros_context.wait_until(all_heard)
+
+    hear("one")
+    hear("two")
+    stream.start()
+    try:
+        arrive({"one", "two"})
+        hear("late")  # while it runs
+        arrive({"late"})
+        with stream.between:
+            heard.clear()
+            for topic in topics:
+                topic.publish(Clock())
+            assert not heard
+        arrive({"one", "two", "late"})
+        assert all(alone)
+    finally:
+        stream.stop()
+        node.destroy_node()
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Int64
 from tamp_runtime.qos import LATCHED, NEWEST, RELIABLE
+from tamp_runtime.stream_thread import StreamThread
 from tamp_runtime.subscriptions import AdaptiveSubscription
 
 BEST_EFFORT = QoSProfile(depth=20, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -26,9 +27,15 @@ class Listener(Node):
     def __init__(self, wanted: QoSProfile, **fields: Any) -> None:
         super().__init__("listener", **fields)
         self.heard: list[int] = []
+        self.stream = StreamThread(self, "numbers")
         self.subscription = AdaptiveSubscription(
-            self, Int64, "numbers", lambda message: self.heard.append(message.data), wanted
+            self.stream, Int64, "numbers", lambda message: self.heard.append(message.data), wanted
         )
+        self.stream.start()
+
+    def destroy_node(self) -> None:
+        self.stream.stop()
+        super().destroy_node()
 
 
 class Speaker(Node):

@@ -2,16 +2,20 @@
 """Compiled functions give what interpreted ones give; where nothing compiles, nothing changes."""
 
 import contextlib
+import ctypes
+import gc
 import os
 import select
 import subprocess
 import sys
 import weakref
+from collections.abc import Callable
 from pathlib import Path
 
 import casadi as ca
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from tamp_runtime import machine_code as module
 from tamp_runtime.machine_code import address, opened, written, written_below
 
@@ -95,13 +99,27 @@ def test_c_files_below_a_folder_are_compiled_before_they_are_needed(
     assert [library.value() for library in libraries if library is not None] == [3, 4]
 
 
-def test_an_array_lives_as_long_as_its_address() -> None:
+def read_only() -> NDArray[np.float64]:
     array = np.arange(3.0)
+    array.flags.writeable = False
+    return array
+
+
+@pytest.mark.parametrize(
+    "make",
+    [lambda: np.arange(3.0), read_only, lambda: np.arange(6.0)[::2], lambda: np.empty((0, 3))],
+    ids=["any", "read-only", "with gaps", "empty"],
+)
+def test_an_array_lives_as_long_as_its_address(make: Callable[[], NDArray[np.float64]]) -> None:
+    array = make()
     kept = weakref.ref(array)
     pointer = address(array)
+    begin = ctypes.cast(pointer, ctypes.c_void_p).value
+    assert not array.size or begin == array.__array_interface__["data"][0]
     del array
     assert kept() is not None
     del pointer
+    gc.collect()  # ctypes.cast leaves a cycle
     assert kept() is None
 
 

@@ -10,8 +10,6 @@ from typing import Any, Final
 import numpy as np
 from geometry_msgs.msg import TransformStamped
 from numpy.typing import NDArray
-from rclpy.callback_groups import CallbackGroup
-from rclpy.node import Node
 from sensor_msgs.msg import CameraInfo, Image
 from tamp_runtime.messages.images import (
     ImageError,
@@ -21,6 +19,7 @@ from tamp_runtime.messages.images import (
 )
 from tamp_runtime.messages.stamps import nanoseconds
 from tamp_runtime.qos import LATCHED, NEWEST
+from tamp_runtime.stream_thread import StreamThread
 from tamp_runtime.subscriptions import AdaptiveSubscription
 
 from .calibration import Calibration, LensModel
@@ -65,19 +64,17 @@ class CameraTopics:
             cannot be read.
 
     Args:
-        node: it gets the subscriptions.
+        thread: in which all of this runs, ``on_frame``, too; its node gets the subscriptions.
         name: see above.
         values: the node's parameters.
-        group: of the callbacks.
         on_frame: is called with each complete frame, the newest only.
     """
 
     def __init__(
         self,
-        node: Node,
+        thread: StreamThread,
         name: str,
         values: dict[str, Any],
-        group: CallbackGroup,
         on_frame: Callable[[CameraTopics, StampedSet], None],
     ) -> None:
         self.name = name
@@ -95,9 +92,9 @@ class CameraTopics:
         self._on_frame = on_frame
         for stream, topic in self._topics.items():
             kind = Image if stream in READERS else CameraInfo
-            AdaptiveSubscription(node, kind, topic, self._receiver(stream), NEWEST, group)
+            AdaptiveSubscription(thread, kind, topic, self._receiver(stream), NEWEST)
         AdaptiveSubscription(
-            node, TransformStamped, f"{name}/extrinsics", self._on_extrinsics, LATCHED, group
+            thread, TransformStamped, f"{name}/extrinsics", self._on_extrinsics, LATCHED
         )
 
     def _on_extrinsics(self, message: TransformStamped) -> None:

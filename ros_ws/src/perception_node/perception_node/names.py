@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 #: them, in at least so many pixels.
 _BEFORE: Final = (0.012, 0.05)
 _SOME: Final = 20
+#: Where the counts of each channel's values begin.
+_CHANNELS: Final = np.arange(0, 3 * 256, 256)
 _EXCHANGED: Final = (
     "some colours have no name, but all have one with red and blue exchanged; "
     "is the picture's encoding (rgb8, bgr8) the one it is sent with?"
@@ -134,8 +136,8 @@ def mean_colors(rgb: NDArray[np.uint8], masks: Sequence[NDArray[np.bool_]]) -> A
         left, top, width, height = cv2.boundingRect(mask.view(np.uint8))
         box = np.s_[top : top + height, left : left + width]
         pixels = rgb[box][mask[box]]
-        ordered = (np.bincount(pixels[:, channel]).cumsum() for channel in range(3))
-        medians.append([np.searchsorted(below, len(pixels) // 2, "right") for below in ordered])
+        counts = np.bincount((pixels + _CHANNELS).ravel(), minlength=3 * 256).reshape(3, 256)
+        medians.append((counts.cumsum(axis=1) <= len(pixels) // 2).sum(axis=1))
     return np.array(medians).reshape(-1, 3) / 255.0
 
 

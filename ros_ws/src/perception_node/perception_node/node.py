@@ -19,6 +19,7 @@ from std_msgs.msg import Header
 from std_srvs.srv import Trigger
 from tamp_interfaces.msg import SceneGraph as SceneGraphMsg
 from tamp_interfaces.srv import ImageToSceneGraph
+from tamp_runtime.large_messages import make_room_for_pictures
 from tamp_runtime.machine_code import written_below
 from tamp_runtime.memory import keep_freed_memory
 from tamp_runtime.messages.images import (
@@ -31,6 +32,7 @@ from tamp_runtime.node_process import run_node
 from tamp_runtime.parameters import declare_parameters
 from tamp_runtime.presence import Presence
 from tamp_runtime.qos import NEWEST, RELIABLE, SENSOR_DATA, STATUS
+from tamp_runtime.stream_thread import StreamThread
 from visualization_msgs.msg import MarkerArray
 
 try:
@@ -136,11 +138,13 @@ class PerceptionNode(Node):
         self._graphs = self.create_publisher(SceneGraphMsg, "scene_graph", NEWEST)
         self._drawings = self.create_publisher(Image, "scene_graph/image", SENSOR_DATA)
         self._markers = self.create_publisher(MarkerArray, "scene_graph/markers", RELIABLE)
-        frames = MutuallyExclusiveCallbackGroup()
+        # Pictures are interpreted as they come; what belongs to them is looked at in between.
+        self._frames = StreamThread(self, "frames")
+        others = MutuallyExclusiveCallbackGroup()
         tolerance = round(1e9 * self._values["pairing_tolerance"])
         self._moments = Moments(self._values["cameras"], tolerance, time.perf_counter())
         self._cameras = {
-            name: CameraTopics(self, name, self._values, frames, self._on_frame)
+            name: CameraTopics(self._frames, name, self._values, self._on_frame)
             for name in self._values["cameras"]
         }
         self._main = next(iter(self._cameras.values()))
@@ -151,10 +155,10 @@ class PerceptionNode(Node):
         self._arm = ArmTopics(self, self._values["world_frame"]) if by_depth else None
         if TFMessage is not None:
             self.create_subscription(
-                TFMessage, "/tf_static", self._on_frames, STATUS, callback_group=frames
+                TFMessage, "/tf_static", self._on_frames, STATUS, callback_group=others
             )
-        self.create_timer(0.5, self._on_timer, callback_group=frames)
-        self.create_service(Trigger, "find_places", self._on_find_places, callback_group=frames)
+        self.create_timer(0.5, self._on_timer, callback_group=others)
+        self.create_service(Trigger, "find_places", self._on_find_places, callback_group=others)
         self.create_service(
             ImageToSceneGraph,
             "image_to_scene_graph",
@@ -162,6 +166,7 @@ class PerceptionNode(Node):
             callback_group=MutuallyExclusiveCallbackGroup(),
         )
         Presence(self, "perception_node")
+        self._frames.start()
 
     # Callbacks
 
@@ -172,8 +177,10 @@ class PerceptionNode(Node):
             self._joined = self._joined.configured(self._kept.perception)
 
     def _on_frames(self, message: Any) -> None:
-        for camera in self._cameras.values():
-            camera.calibration.add_frames(map(frame_pose_from_message, message.transforms))
+        poses = [frame_pose_from_message(transform) for transform in message.transforms]
+        with self._frames.between:
+            for camera in self._cameras.values():
+                camera.calibration.add_frames(poses)
 
     def _on_frame(self, camera: CameraTopics, frame: StampedSet) -> None:
         moment = self._moments.add(camera.name, frame, time.perf_counter())
@@ -186,12 +193,16 @@ class PerceptionNode(Node):
         if self._kept.finds and time.perf_counter() - self._main.last_image > SILENCE:
             response.message = f"no picture came within {SILENCE:g} s; check the camera"
         else:
-            response.success, response.message = self._kept.find_anew()
+            with self._frames.between:
+                response.success, response.message = self._kept.find_anew()
         return response
 
     def _on_timer(self) -> None:
         """Says so when images arrive that never make a frame."""
-        now = time.perf_counter()
+        with self._frames.between:
+            self._say_what_is_missing(time.perf_counter())
+
+    def _say_what_is_missing(self, now: float) -> None:
         told = [camera.problem(now, SILENCE) for camera in self._cameras.values()]
         sentence = "; ".join(filter(None, told)) or self._moments.problem(now)
         if not sentence:
@@ -308,6 +319,7 @@ class PerceptionNode(Node):
 
     def destroy_node(self) -> None:
         """Writes the pictures that are kept and not written yet."""
+        self._frames.stop()
         if self._arm is not None:
             self._arm.stop()
         if self._recorder is not None:
@@ -346,4 +358,5 @@ def _recorder(folder: str) -> Recorder | None:
 
 def run() -> int:
     """Runs the node until it is stopped; returns the process's exit code."""
+    make_room_for_pictures()  # scene_graph/image, where somebody looks at it
     return run_node(PerceptionNode)

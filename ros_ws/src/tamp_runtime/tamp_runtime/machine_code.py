@@ -17,7 +17,7 @@ import shutil
 import subprocess
 import tempfile
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any, Final
@@ -82,12 +82,18 @@ def written_below(folder: Path) -> None:
         written(file)
 
 
-def address(array: NDArray[Any]) -> ctypes.c_void_p:
+def address(array: NDArray[Any]) -> Any:
     """Where the values of an array begin, for C; the array lives as long as this does."""
-    # What ``array.ctypes.data_as`` does, in a third of the time.
-    pointer: Any = ctypes.c_void_p(array.ctypes.data)
-    pointer.array = array
-    return pointer  # type: ignore[no-any-return]
+    # What ``array.ctypes.data_as`` does, in a tenth of the time.
+    try:
+        return ctypes.byref(_first_byte(array))
+    except (TypeError, ValueError):  # nobody may write to it, or it has gaps or no values
+        pointer: Any = ctypes.c_void_p(array.ctypes.data)
+        pointer.array = array
+        return pointer
+
+
+_first_byte: Final[Callable[[Any], ctypes.c_char]] = ctypes.c_char.from_buffer
 
 
 def opened(library: Path | None) -> ctypes.CDLL | None:

@@ -5,11 +5,9 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import Any, Final, cast
+from typing import Any, Final
 
-from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import QoSRequestedIncompatibleQoSInfo, SubscriptionEventCallbacks
-from rclpy.node import Node
 from rclpy.qos import (
     DurabilityPolicy,
     QoSPolicyKind,
@@ -17,6 +15,8 @@ from rclpy.qos import (
     ReliabilityPolicy,
     qos_policy_name_from_kind,
 )
+
+from .stream_thread import ASIDE, StreamThread
 
 #: Of so many messages it is remembered that they were handled. The two copies of a message arrive
 #: one after the other, but for what waits in the queues.
@@ -32,35 +32,37 @@ class AdaptiveSubscription:
     than its shared-memory segment. A message that both subscriptions receive is handled once.
 
     Args:
-        node: it gets the subscriptions.
+        stream: the thread that hears them; its node gets the subscriptions.
         kind, topic, callback: as for ``create_subscription``; the callback takes the message.
         wanted: the profile to begin with.
-        callback_group: in which the callback runs.
     """
 
     def __init__(
         self,
-        node: Node,
+        stream: StreamThread,
         kind: type,
         topic: str,
         callback: Callable[[Any], None],
         wanted: QoSProfile,
-        callback_group: CallbackGroup | None = None,
     ) -> None:
-        self._node, self._kind, self._topic = node, kind, topic
-        self._callback, self._wanted, self._group = callback, wanted, callback_group
+        self._stream, self._kind, self._topic = stream, kind, topic
+        self._callback, self._wanted = callback, wanted
         self._handled: deque[int] = deque(maxlen=_REMEMBERED)
         self._relaxed = False
-        # rclpy's types know no callbacks of two arguments, though it has them: the second is info.
-        self._heard = cast(Callable[[Any], None], self._receive)
-        node.create_subscription(
-            kind,
-            topic,
-            self._heard,
-            wanted,
-            callback_group=callback_group,
-            event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._on_incompatible),
+        self._subscribe(wanted, SubscriptionEventCallbacks(incompatible_qos=self._on_incompatible))
+
+    def _subscribe(
+        self, profile: QoSProfile, events: SubscriptionEventCallbacks | None = None
+    ) -> None:
+        subscription = self._stream.node.create_subscription(
+            self._kind,
+            self._topic,
+            self._callback,
+            profile,
+            callback_group=ASIDE,
+            event_callbacks=events,
         )
+        self._stream.hear(subscription, self._receive)
 
     @property
     def relaxed(self) -> bool:
@@ -68,22 +70,18 @@ class AdaptiveSubscription:
         return self._relaxed
 
     def _on_incompatible(self, event: QoSRequestedIncompatibleQoSInfo) -> None:
-        if self._relaxed or not self._node.context.ok():
+        if self._relaxed or not self._stream.node.context.ok():
             return
         self._relaxed = True
-        self._node.create_subscription(
-            self._kind,
-            self._topic,
-            self._heard,
+        self._subscribe(
             QoSProfile(
                 history=self._wanted.history,
                 depth=self._wanted.depth,
                 reliability=ReliabilityPolicy.BEST_EFFORT,
                 durability=DurabilityPolicy.VOLATILE,
-            ),
-            callback_group=self._group,
+            )
         )
-        self._node.get_logger().info(
+        self._stream.node.get_logger().info(
             f"{self._topic} is published with less than asked for "
             f"({_offered(event.last_policy_kind)}); it is heard like that, too"
         )

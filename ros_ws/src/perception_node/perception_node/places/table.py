@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from perception_node.camera import PinholeCamera
 from perception_node.masks import pixels_of
 from perception_node.observation import Observation
+from perception_node.quantiles import quantiles
 from perception_node.segment import Segments
 
 from .standing import Places, Points
@@ -45,7 +46,7 @@ def table_problem(observation: Observation, segments: Segments, places: Places) 
     if np.count_nonzero(known) < MIN_PIXELS:
         return ""
     offsets = camera.position_world[2] + down[known] * measured[known] - height
-    first, middle, last = np.percentile(offsets, [25, 50, 75])
+    first, middle, last = quantiles(offsets, 0.25, 0.5, 0.75)
     if abs(middle) <= MAX_OFFSET or last - first > MAX_SPREAD:
         return ""
     side = "above" if middle > 0.0 else "below"

@@ -41,8 +41,9 @@ def levels(labels: NDArray[np.integer], points: NDArray[np.floating]) -> tuple[A
     for label in range(1, len(low)):
         mine = own[names == label]
         if len(mine):
-            heights[label] = np.sort(mine[:, 2]).astype(np.float64)
-            middles[label] = np.median(mine, axis=0)
+            ordered = np.sort(mine, axis=0)
+            heights[label] = ordered[:, 2].astype(np.float64)
+            middles[label] = 0.5 * (ordered[(len(mine) - 1) // 2] + ordered[len(mine) // 2])
     for upper, middle in middles.items():
         apart = {
             lower: middle[2] - other[2]
