@@ -11,7 +11,7 @@ from seen_worlds import LABELLED, PERCEPTION, TOWERS, observe, perceive, put
 
 from perception_node import Observation, Perception
 from perception_node.errors import BadImageError
-from perception_node.segment import Segments
+from perception_node.segment import Segments, Volume
 from perception_node.segment.checks import check_segments
 from scene_graph import GraphStatus
 from sim_node.layouts import random_layout
@@ -167,3 +167,25 @@ def test_a_block_that_fell_before_a_tower_scatters_no_labels(
     put(world, "green_box", (0.055, aside, -0.09))
     perceived = perceive(world, perception=perception)
     assert perceived.status in (GraphStatus.UNSTABLE, GraphStatus.OCCLUDED), perceived.message
+
+
+@pytest.mark.parametrize("taken", [("red_box", "blue_box"), ("blue_box", "yellow_box")])
+def test_two_blocks_under_one_label_are_told_by_colour_and_so_are_the_others(
+    world: World, taken: tuple[str, str]
+) -> None:
+    layout = (("red_box", "blue_box", "yellow_box"), (), ("green_box", "pink_box"))
+    world.reset(layout)
+    observation, one, other = observe(world), *map(world.label, taken)
+    assert observation.labels is not None
+    labels = np.where(observation.labels == other, one, observation.labels)
+
+    def merged(_observation: Observation, _volume: Volume | None) -> Segments:
+        return Segments.from_labels(labels)
+
+    perception = Perception(PERCEPTION.locator, PERCEPTION.config, merged)
+    perceived = perception.perceive(observation)
+    assert perceived.status is GraphStatus.BAD_IMAGE
+    colors = perceived.message.partition(" covers is ")[2].partition(":")[0].split(" and ")
+    assert {f"{color}_box" for color in colors} == {*taken}
+    assert set(perceived.graph.names) == {name for stack in layout for name in stack} - {*taken}
+    assert not perceived.graph.relations

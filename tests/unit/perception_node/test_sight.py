@@ -62,9 +62,12 @@ def test_a_tower_that_ends_above_the_picture_is_noticed() -> None:
         perceived = perceive(world, world.render())
     assert perceived.status is GraphStatus.BAD_IMAGE
     reaching = "block reaches the upper edge of the picture"
-    assert any(
-        perceived.message.startswith(f"the {color} {reaching}") for color in list(COLORS)[:7]
-    )
+    told = {color for color in COLORS if perceived.message.startswith(f"the {color} {reaching}")}
+    assert len(told) == 1
+    # The others are told of, and nothing of how they stand.
+    others = {item.color for item in perceived.graph.objects}
+    assert {*list(COLORS)[:5]} <= others < {*list(COLORS)[:7]} and not others & told
+    assert not perceived.graph.relations
 
 
 @pytest.mark.parametrize(("count", "seen"), [(8, True), (9, False), (10, False)])

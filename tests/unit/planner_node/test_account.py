@@ -101,6 +101,20 @@ def test_fault_4_the_reason_of_a_motion_is_not_dropped_when_the_look_after_it_fa
     assert outcome.causes[:2] == ("the true reason", "red_box leans")
 
 
+def test_what_is_new_in_a_picture_that_is_refused_is_told() -> None:
+    bench = LoopBench(knock((("red_box",), ("blue_box",), ("green_box", "pink_box"))))
+
+    def lean() -> None:
+        if bench.plans:
+            bench.fault = {"status": GraphStatus.UNSTABLE, "message": "red_box leans"}
+        bench.live_on()
+
+    bench.clock.on_wait = lean
+    outcome = bench.achieve()
+    assert outcome.status == Status.NOT_CONFIDENT
+    assert "red_box leans; pink_box seems to be new" in outcome.message
+
+
 def test_a_motion_that_fails_for_good_with_the_goal_reached_is_a_success_with_a_cause() -> None:
     def fail_at_the_end(bench: LoopBench, plan: Plan) -> Iterator[MotionReport]:
         moves = len(plan.moves)

@@ -14,6 +14,14 @@ class BadImageError(PerceptionError):
     """An image, segmentation, depth or camera that cannot be used."""
 
 
+class BlockImageError(BadImageError):
+    """One block that cannot be used, by the ``label`` of its mask; the others can be told of."""
+
+    def __init__(self, message: str, label: int) -> None:
+        super().__init__(message)
+        self.label = label
+
+
 class UnmeasuredError(BadImageError):
     """A block of which too little depth is known; ``index`` is that of its segment."""
 

@@ -15,7 +15,7 @@ from .alignment import aligned
 from .blocks import centres, find_blocks, measure
 from .config import PerceptionConfig
 from .covered import Seen, measure_seen, poorly_seen, uncovered
-from .errors import BadImageError, HiddenPlacesError, PerceptionError, PlacesError
+from .errors import BadImageError, BlockImageError, HiddenPlacesError, PerceptionError, PlacesError
 from .fallen import find_fallen, with_fallen
 from .graph import build_graph
 from .hiding import Hidden, find_hidden
@@ -39,7 +39,7 @@ from .segment import (
     given_labels,
 )
 from .sight import sight_problem
-from .strays import find_strays, with_strays
+from .strays import find_strays, seen_besides, with_strays
 from .verdict import Verdict, judge, judge_empty, judge_fallen, with_grain, with_stray
 from .view import View
 from .visual_module.coordinates import Locator
@@ -160,15 +160,20 @@ class Perception:
         observation.check_values()
         taken, observation = observation, self._aligned(observation, self._volume)
         segments = self._segments(observation, self._volume)
-        check_segments(taken.rgb, segments, observation.depth)
 
         def refused(verdict: Verdict) -> Perceived:
             return self.rejected(*with_grain(verdict, observation.noise))
 
-        if problem := table_problem(observation, segments, places):
-            raise BadImageError(problem)
-        if problem := sight_problem(observation, segments, places, config):
-            raise BadImageError(problem)
+        try:
+            check_segments(taken.rgb, segments, observation.depth)
+            if problem := table_problem(observation, segments, places):
+                raise BadImageError(problem)
+            if problem := sight_problem(observation, segments, places, config):
+                raise BadImageError(problem)
+        except BlockImageError as error:
+            perceived = self.rejected(GraphStatus.BAD_IMAGE, str(error))
+            others = seen_besides(observation, segments, error.label)
+            return replace(perceived, graph=with_strays(perceived.graph, others))
 
         def nothing(seen: Seen) -> Perceived:
             occlusion = find_occlusion(observation, segments, places, config)

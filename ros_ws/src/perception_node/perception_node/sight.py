@@ -13,6 +13,7 @@ from scene_graph import BlockPose, Place, base_name
 
 from .camera import PinholeCamera
 from .config import PerceptionConfig
+from .errors import BlockImageError
 from .light import color_names
 from .masks import pixels_of
 from .names import mean_colors
@@ -44,6 +45,9 @@ def sight_problem(
     """A sentence about the first place, or block, that is not wholly in the picture; or nothing.
 
     Nothing is said without camera or places, or of masks that came without depth.
+
+    Raises:
+        BlockImageError: it is one block only, which reaches the edge of the picture.
     """
     depth, camera = observation.depth, observation.camera
     if camera is None or not places.places or (depth is None and segments.hides is None):
@@ -75,7 +79,8 @@ def sight_problem(
                 f"what stands on {name} is higher than {config.column_height:g} m; set "
                 "column_height to the height of the highest tower"
             )
-    return _cut_off(observation.rgb, segments)
+    _check_edges(observation.rgb, segments)
+    return ""
 
 
 def _box(place: Place, lift: float, size: tuple[float, float, float]) -> BlockPose:
@@ -131,8 +136,8 @@ def _rays(
     return rows, columns, camera.rays_world(np.stack([columns, rows], axis=-1))
 
 
-def _cut_off(rgb: NDArray[np.uint8], segments: Segments) -> str:
-    """A sentence about a block at the picture's edge, beyond which there may be more."""
+def _check_edges(rgb: NDArray[np.uint8], segments: Segments) -> None:
+    """Raises BlockImageError for a block at the picture's edge, beyond which there may be more."""
     parts = [segment.part for segment in segments]
     for index, part in enumerate(parts):
         for side, edge in (
@@ -143,11 +148,11 @@ def _cut_off(rgb: NDArray[np.uint8], segments: Segments) -> str:
         ):
             if edge.any():
                 color = color_names(mean_colors(rgb, parts))[index]
-                return (
+                raise BlockImageError(
                     f"the {color} block reaches the {side} edge of the picture, so it is not known "
-                    "what is beyond; turn the camera, or move it away"
+                    "what is beyond; turn the camera, or move it away",
+                    segments.blocks[index].label,
                 )
-    return ""
 
 
 def _known(depth: NDArray[np.floating]) -> Mask:

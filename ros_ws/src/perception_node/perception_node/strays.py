@@ -15,6 +15,7 @@ import numpy as np
 
 from scene_graph import UNKNOWN, SceneGraph, SceneObject, object_name
 
+from .blocks import measure
 from .blocks.measure import BlockSurface, measure_blocks
 from .errors import PerceptionError
 from .light import color_names
@@ -62,24 +63,39 @@ def find_strays(
         surfaces = measure_blocks(found, observation.depth, observation.camera, observation.noise)
     except PerceptionError:  # whatever it is, it is in nobody's way
         return ()
-    colors = color_names(mean_colors(observation.rgb, [item.part for item in apart]))
-    return tuple(
+    objects = _objects(observation, found, surfaces)
+    on_the_table = [abs(surface.low - strip.floor) < _HANGS for surface in surfaces]
+    return tuple(item for item, lies in zip(objects, on_the_table) if item is not None and lies)
+
+
+def seen_besides(observation: Observation, segments: Segments, label: int) -> list[SceneObject]:
+    """What is seen of a scene of which a block of a label makes that nothing can be planned on."""
+    others = replace(segments, blocks=tuple(item for item in segments if item.label != label))
+    try:
+        surfaces = measure(observation, others)
+    except PerceptionError:
+        return []
+    return [item for item in _objects(observation, others, surfaces) if item is not None]
+
+
+def _objects(
+    observation: Observation, segments: Segments, surfaces: Sequence[BlockSurface]
+) -> list[SceneObject | None]:
+    """Measured things; None for what has no colour with a name, lies, or is larger than a block."""
+    colors = color_names(mean_colors(observation.rgb, [item.part for item in segments]))
+    return [
         SceneObject(
             name=object_name(color, surface.shape),
             color=color,
             shape=surface.shape,
             position_world=(*surface.position, 0.5 * (surface.low + surface.high)),
         )
+        if color != UNKNOWN
+        and surface.upright
+        and max(surface.high - surface.low, *surface.widths) < _LARGEST
+        else None
         for surface, color in zip(surfaces, colors)
-        if color != UNKNOWN and _is_like_a_block(surface, strip.floor)
-    )
-
-
-def _is_like_a_block(surface: BlockSurface, floor: float) -> bool:
-    """Whether it is as large as a block can be and on the table: a wall or a tray is none."""
-    height = surface.high - surface.low
-    on_the_table = abs(surface.low - floor) < _HANGS
-    return surface.upright and on_the_table and max(height, *surface.widths) < _LARGEST
+    ]
 
 
 def with_strays(graph: SceneGraph, strays: Sequence[SceneObject]) -> SceneGraph:

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from perception_node.errors import BadImageError
+from perception_node.errors import BadImageError, BlockImageError
 from perception_node.light import color_names
 from perception_node.quantiles import quantiles
 
@@ -49,6 +49,7 @@ def check_segments(
 
     Raises:
         BadImageError: names the label, and what to check.
+        BlockImageError: it is one block only.
     """
     same_pixels = f"shows the same pixels as {segments.source}"
     for segment in segments:
@@ -70,10 +71,11 @@ def check_segments(
             )
         if _color_range(rgb[box][part]) > MAX_COLOR_RANGE:
             if two := _two_colors(rgb[box][part]):
-                raise BadImageError(
+                raise BlockImageError(
                     f"what label {segment.label} covers is {two[0]} and {two[1]}: the {two[0]} "
                     f"block and the {two[1]} block may lie on one another; part them, or check "
-                    f"that camera/image_raw {same_pixels}"
+                    f"that camera/image_raw {same_pixels}",
+                    segment.label,
                 )
             raise BadImageError(
                 f"the pixels of label {segment.label} have no common colour; check "

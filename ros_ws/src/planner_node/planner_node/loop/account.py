@@ -14,7 +14,7 @@ from scene_graph import Stacks, base_name, format_stacks, is_hidden
 from .execution import STALE_SECONDS
 from .plan import Plan
 from .report import Outcome
-from .scene import Scene
+from .scene import Scene, Sighting
 
 _DOING: Final = {"pick": "picking", "place": "placing", "home": "going home"}
 
@@ -62,6 +62,19 @@ def in_the_view(report: MotionReport) -> str:
     if report.arm not in (ArmPlace.RESTING, ArmPlace.MOVING):
         return ""
     return f"the robot's own arm is in the view: {describe_arm(report)}"
+
+
+def newly_seen(sighting: Sighting | None, known: Scene | None) -> str:
+    """A clause about blocks in a picture that is refused which were not there before, or nothing.
+
+    Args:
+        known: the last scene that was not refused.
+    """
+    if sighting is None or known is None:
+        return ""
+    names = {item.name for item in sighting.graph.objects if not is_hidden(item.name)}
+    new = sorted(names.difference(known.names, known.lying))
+    return f"{', '.join(new)} {'seems' if len(new) == 1 else 'seem'} to be new" if new else ""
 
 
 def describe_difference(plan: Plan, end: MotionReport, seen: Scene) -> str:

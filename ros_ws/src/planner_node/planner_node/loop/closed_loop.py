@@ -25,7 +25,7 @@ from ..errors import (
 from ..goals.goal import Goal, ResolveGoal
 from ..search import SearchResult
 from ..settings import EACH_MOVE, WATCH, Settings
-from .account import account_for, agree, besides, describe_difference, in_the_view
+from .account import account_for, agree, besides, describe_difference, in_the_view, newly_seen
 from .arm_home import ArmHome
 from .certain_goal import Answers
 from .clock import Clock
@@ -284,8 +284,10 @@ class ClosedLoop:
                 self._check()
                 raise
             except _UNSEEN as error:
-                if clause := in_the_view(self._motion.newest):
-                    error.args = (f"{error}; {clause}",)
+                clauses = [str(error), in_the_view(self._motion.newest)]
+                if isinstance(error, NotConfidentError):
+                    clauses.append(newly_seen(self._scenes.newest, self._record.outcome.final))
+                error.args = ("; ".join(filter(None, clauses)),)
                 raise
         self._record.note(final=scene)
         return scene
