@@ -73,9 +73,10 @@ def measure(options: argparse.Namespace) -> list[Row]:
     rows = baseline_rows(train, test) + together([seed.rows for seed in of_seeds])
     for channels in options.channels:
         right, named = (
-            {setting: [getattr(seed, what)[setting, channels] for seed in of_seeds]
+            {setting: [of_seed[setting, channels] for of_seed in found
+                       if (setting, channels) in of_seed]
              for setting in options.settings}
-            for what in ("right", "named")
+            for found in ([seed.right for seed in of_seeds], [seed.named for seed in of_seeds])
         )  # fmt: skip
         rows += gain_rows(right, channels, owners_of(test))
         rows += linear_rows(named, channels, of_seeds[0].things)
@@ -116,7 +117,8 @@ def _of_seed(options: argparse.Namespace, seed: int, train: ClevrSet, test: Clev
         name = f"{setting}_{encoder.channels}_{options.answerer}_{seed}"
         return train_qa(options.runs / name, config, reader, start)
 
-    for channels in options.channels:
+    alone = options.once if seed != options.seeds[0] else ()
+    for channels in (size for size in options.channels if size not in alone):
         encoder = EncoderConfig(options.quantiser, channels, options.width)
         for setting in options.settings:
             # The reader cannot be asked of what shows nothing yet: the others go on from there.
@@ -172,6 +174,14 @@ def _parse() -> argparse.Namespace:
     parser.add_argument("--threads", type=int, default=2, help="processor threads")
     parser.add_argument(
         "--seeds", nargs="+", type=int, default=[0, 1, 2], help="of weights and batches"
+    )
+    parser.add_argument(
+        "--once",
+        nargs="*",
+        type=int,
+        choices=CHANNELS,
+        default=[16, 8],
+        help="sizes that are trained with the first seed only",
     )
     return parser.parse_args()
 

@@ -11,9 +11,11 @@ from results_file import Row
 
 
 def together(of_seeds: Sequence[Sequence[Row]]) -> list[Row]:
-    """The mean of each row over seeds; with several, the spread is that of the seeds."""
-    if len(of_seeds) == 1:
-        return list(of_seeds[0])
+    """The mean of each row over the seeds that have it; of several, the spread is theirs.
+
+    Args:
+        of_seeds: their rows; the first seed has all.
+    """
     rows = []
     for row in of_seeds[0]:
         values = [
@@ -22,6 +24,9 @@ def together(of_seeds: Sequence[Sequence[Row]]) -> list[Row]:
             for other in seed
             if (other.set, other.metric) == (row.set, row.metric)
         ]
+        if len(values) == 1:
+            rows.append(row)
+            continue
         mean, spread = float(np.mean(values)), (min(values), max(values))
         note = "; of the first: ".join(filter(None, [told(values), row.note]))
         rows.append(replace(row, value=mean, spread=spread, note=note))
