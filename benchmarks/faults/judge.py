@@ -11,7 +11,7 @@ from faults.askers import Answer
 from faults.fault import Ending, Fault, names_the_cause
 from planner_node.goals import parse_goal, resolve_goal
 from scene_graph import UP, SceneGraph, base_name
-from tamp_bringup.scene_observer import true_stacks
+from sim_node.ground_truth import standing_blocks
 
 #: How far a block may be beside the middle of its place, and of the block beneath, so that nobody
 #: would call the scene untidy [m].
@@ -47,13 +47,17 @@ def ending_of(
 
 
 def holds(goal: str, truth: SceneGraph | None) -> bool:
-    """Whether the true state fulfils a goal; one that lacks its blocks does not."""
-    stacks = true_stacks(truth) if truth else None
-    if not stacks or truth is None:
+    """Whether the true state fulfils a goal; one that lacks its blocks does not.
+
+    A block that stands nowhere, as one that fell beside the places, counts if the goal is of it.
+    """
+    if truth is None:
         return False
+    stacks, _ = standing_blocks(truth)
     try:
-        return resolve_goal(parse_goal(goal), truth.names).holds(stacks)
-    except Exception:  # a goal about blocks that are gone
+        names = [name for stack in stacks for name in stack]
+        return resolve_goal(parse_goal(goal), names).holds(stacks)
+    except Exception:  # a goal about blocks that are gone, or stand nowhere
         return False
 
 

@@ -26,8 +26,9 @@ from faults.noticing import (
     noticed_in_time,
 )
 from faults.setting import Setting
-from scene_graph import SceneGraph, Stacks
+from scene_graph import SceneGraph, Stacks, format_stacks
 from sim_node.cli.client import DisturbClient
+from sim_node.ground_truth import standing_blocks
 
 BLOCKS: Final = 5
 #: The kinds, by the names of the fault campaign's.
@@ -98,6 +99,7 @@ class MomentResult:
         until_grasp: from the moment until the next grasp, if there was one, likewise.
         grasps_lost, replans, stops: over the task.
         simulated_seconds: from the request to the answer.
+        truth: how the blocks stood when the answer came, and where those lay that stood nowhere.
     """
 
     kind: str
@@ -123,6 +125,7 @@ class MomentResult:
     stops: int = 0
     simulated_seconds: float = 0.0
     wall_seconds: float = 0.0
+    truth: str = ""
 
 
 def run_at_random_moment(
@@ -244,6 +247,13 @@ def _differs(before: SceneGraph, after: SceneGraph | None, blocks: tuple[str, ..
     return False
 
 
+def _described(truth: SceneGraph) -> str:
+    stacks, lying = standing_blocks(truth)
+    spots = {name: truth.object(name).position_world for name in lying}
+    told = [f"{name} at ({x:.2f}, {y:.2f}, {z:.2f}) m" for name, (x, y, z) in spots.items()]
+    return "; ".join([format_stacks(stacks), *told])
+
+
 def _judged(
     setting: Setting,
     result: MomentResult,
@@ -270,6 +280,7 @@ def _judged(
         replans=answer.replans if answer else 0,
         grasps_lost=grasps_lost(reports),
         stops=len(stops),
+        truth=_described(truth) if truth else "",
     )
     if disturbance is None:
         return result

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -152,6 +153,16 @@ def test_goal_is_judged_by_the_truth() -> None:
     assert not holds("red on blue", truth(APART))
     assert not holds("red on blue", None)
     assert not holds("red on green", truth(RED_ON_BLUE))
+
+
+@pytest.mark.parametrize(("fallen", "reached"), [("green_box", True), ("red_box", False)])
+def test_a_block_that_stands_nowhere_counts_only_if_the_goal_is_of_it(
+    fallen: str, reached: bool
+) -> None:
+    stacks = tuple(tuple(name for name in stack if name != fallen) for stack in RED_ON_BLUE)
+    standing = truth(stacks)
+    lies = SceneObject(fallen, "red", "box", (0.5, -0.4, 0.02))
+    assert holds("red on blue", replace(standing, objects=(*standing.objects, lies))) is reached
 
 
 def test_a_claim_that_is_not_so_is_a_false_success() -> None:
