@@ -41,9 +41,15 @@ class Claims:
         self._sides = False
         #: The last two that were said to be in one place.
         self._pair: list[Term] = []
+        #: The last two that were said to be beside each other.
+        self._neighbors: list[Term] = []
         #: Who stands at the bottom of a tower of which it is not yet said where it is.
         self._foot: Term | None = None
         self._footed: Term | None = None
+        #: What was told to be cleared: it is no longer clear when something is put there.
+        self._cleared: list[Said] = []
+        #: Whether the place of the clause is told first: "on it goes red".
+        self._onward = False
         #: How many relations there were before the sentence.
         self._before = 0
 
@@ -89,6 +95,7 @@ class Claims:
             if together and object_.is_place and phrase == UPON and not denied:
                 # Several blocks on a place cannot all stand directly on it.
                 meaning = phrase._replace(predicate=PREDICATES[ABOVE])
+            self._cover(subject, meaning, object_, denied)
             self.relations.append(ParsedRelation(subject, meaning, object_, denied))
 
     def _among_others(self, subject: Term, phrase: Phrase, object_: Term) -> Term:
@@ -168,6 +175,17 @@ class Claims:
         if found is None:
             raise unclear(one)
         self.relations.append(found)
+
+    def _cover(self, subject: Term, phrase: Phrase, object_: Term, denied: bool) -> None:
+        """ "clear red, then put blue on it"."""
+        if phrase != UPON or denied or subject.kind is not Kind.THE or object_.is_place:
+            return
+        covered = [
+            said
+            for said in self._cleared
+            if isinstance(said, ParsedRelation) and key_of(said.object) == key_of(object_)
+        ]
+        self.relations = [said for said in self.relations if said not in covered]
 
     def _nothing_on(self, term: Term) -> None:
         nothing = Term(Words("block", term.words.offset), Kind.NO, 0, 0)

@@ -33,6 +33,11 @@ def _either_of(w: Word) -> Names:
     return Names((term_of(words_of(w, text="they"), Kind.EVERY, bare=True),), either=True)
 
 
+def _either_name(n: tuple[Words, bool]) -> Names | None:
+    """ "not on either of the red ones"."""
+    return Names((term_of(n[0], Kind.EVERY),), either=True) if n[1] else None
+
+
 def _both(who: Names) -> Names:
     return replace(who, both=True)
 

@@ -71,6 +71,13 @@ def _in_place_aside(r: Word, who: Names) -> Link | None:
     return Link(words_of(r), r.phrase, who, adjacent=True)
 
 
+def _of_stacks(r: Word, who: Names, d: Word | None = None) -> Link | None:
+    """ "left of blue's stack"."""
+    if r.phrase is None or r.phrase.predicate.name not in (*_SIDEWAYS, BESIDE):
+        return None
+    return _relation(r, who, d)
+
+
 def _in_place_beside(r: Word, who: Names) -> Link | None:
     if r.phrase is None or r.phrase.predicate.name != BESIDE:
         return None
@@ -204,6 +211,13 @@ def _and(
     if to.how == "there":
         return None
     return (to, *rest)
+
+
+def _and_not_with(to: Link, who: Names) -> tuple[Link, ...] | None:
+    """ "together with blue, not with green"."""
+    if to.how != "same" or to.names is None or to.denied or who.either or who.denied:
+        return None
+    return (to, replace(to, names=who, denied=True))
 
 
 def _not_directly(to: Link) -> tuple[Link, ...] | None:

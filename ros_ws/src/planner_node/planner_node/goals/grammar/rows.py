@@ -82,11 +82,15 @@ def _leveled(
         upwards = first == (e[0] == "bottom")
         return row_of(UP, n if upwards else n[::-1], p)
     where = [how for how, _ in levels]
+    if "start" in where:
+        h = h or "tower"
     if h is None and ("upon" in where or "first" in where):
         return None  # "red at the bottom, blue on it": of which tower?
     if "under" in where and where[0] != "top":
         return None
-    same = {"upon": "then", "under": "then", "first": "bottom"}
+    if h is not None and where[0] == "then" and set(where[1:]) <= {"upon", "over"}:
+        where[0] = "bottom"
+    same = {"upon": "then", "over": "then", "start": "bottom", "under": "then", "first": "bottom"}
     where = [same.get(how, how) for how in where]
     blocks = [block for _, block in levels]
     ordered = _ordered(where, blocks)
