@@ -98,6 +98,12 @@ def _one_tower(s: Names) -> Relate | None:
     return Relate(Names((term,)), (Link(term.words, how="same"),))
 
 
+def _nothing_put(n: Word, to: tuple[Link, ...]) -> Relate | None:
+    """ "no stacking on yellow"."""
+    nothing = term_of(words_of(n, text="block"), Kind.NO, least=0, most=0)
+    return Relate(Names((nothing,)), to) if n.text == "no" and len(to) == 1 else None
+
+
 def _command_of_it(p: bool, to: tuple[Link, ...]) -> Relate | None:
     return None if p else Relate(None, to)
 

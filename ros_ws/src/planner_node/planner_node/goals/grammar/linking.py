@@ -19,6 +19,12 @@ from .nominal import INSIDE, UPON
 _BESIDE = Phrase(PREDICATES[BESIDE])
 
 
+def _any_of(term: Term) -> Term:
+    """ "not in a stack with any box": with none of them."""
+    some = term.kind is Kind.COUNT and (term.least, term.most) == (1, None)
+    return replace(term, kind=Kind.EVERY) if some else term
+
+
 class Linking(Anaphora):
     """Says relations of their subjects."""
 
@@ -53,6 +59,8 @@ class Linking(Anaphora):
             if others and len(subjects) == 1 and subjects[0].kind is Kind.NO:
                 subjects = [replace(subjects[0], kind=Kind.EVERY, least=1, most=None)]
                 denied = not denied  # "no box in the same stack as the ball"
+            if denied:
+                others = [_any_of(other) for other in others]
             blocks = [*subjects, *others]
             if not others and len(blocks) == 1 and blocks[0].kind is Kind.THE and self.object:
                 blocks.append(self.object)  # "red under blue, in the same stack"
