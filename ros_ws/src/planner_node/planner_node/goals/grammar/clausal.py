@@ -73,6 +73,13 @@ def _different_for(s: Names) -> Relate:
     return Relate(s, (Link(s.terms[0].words, how="different"),))
 
 
+def _own(s: Names, v: Verb | None = None, wished: bool = False) -> Relate | None:
+    """ "every box has a stack of its own"."""
+    one = len(s.terms) == 1 and s.terms[0].kind is Kind.THE
+    link = Link(s.terms[0].words, how="alone" if one else "different")
+    return relate(s, (link,), v) if asked(v, s, wished) else None
+
+
 def _no_two(n: tuple[Words, bool], v: Verb | None = None) -> Relate | None:
     if v and v.denied:
         return None
@@ -151,6 +158,14 @@ def _plain(s: Names, to: Link, o: Word | str, v: Verb | None) -> bool:
         return False
     place = to.names is not None and all(term.is_place for term in to.names.terms)
     return place and all(t.exact is None and not t.bare and not t.others for t in s.terms)
+
+
+def _only_for(p: Names, s: Names) -> Relate | None:
+    """ "stack 1 is for boxes only"."""
+    if s.either or s.denied or any(term.kind not in (Kind.THE, Kind.EVERY) for term in s.terms):
+        return None
+    nothing = term_of(Words("block", 0, 0), Kind.NO, least=0, most=0, but=s.terms)
+    return Relate(Names((nothing,)), (Link(p.terms[0].words, INSIDE, p),))
 
 
 def but(s: Names, e: Names) -> Names | None:

@@ -33,6 +33,9 @@ class Linking(Anaphora):
     ) -> None:
         how = link.how if link.how != "or" else ""
         written = link.words
+        if how == "buried":
+            self._clear(subjects, not denied)
+            return
         if how in ("clear", "cleared"):
             before = len(self.relations)
             self._clear(subjects, denied)

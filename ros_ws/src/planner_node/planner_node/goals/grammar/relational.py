@@ -58,6 +58,18 @@ def _per_place(p: Term) -> Link:
     return Link(p.words, INSIDE, Names((p,)))
 
 
+def _on_head(w: Word) -> Link | None:
+    """ "on its head"."""
+    if w.phrase is None or w.phrase != UPON:
+        return None
+    return Link(words_of(w), UPON, Names((term_of(words_of(w, text="it")),)))
+
+
+def _in_any(w: Word) -> Link:
+    stack = term_of(words_of(w, text="stack"), Kind.COUNT)
+    return Link(words_of(w), INSIDE, Names((stack,)))
+
+
 def _at_side(w: Word, t: Word, s: Word) -> Link | None:
     if w.text not in ("on", "in", "at") or t.text != "the" or s.text.startswith("far"):
         return None
@@ -86,6 +98,10 @@ def _in_place_beside(r: Word, who: Names) -> Link | None:
 
 def _clear(w: Word) -> Link:
     return Link(words_of(w), how="clear")
+
+
+def _buried(w: Word) -> Link:
+    return Link(words_of(w), how="buried")
 
 
 def _there(w: Word) -> Link:
