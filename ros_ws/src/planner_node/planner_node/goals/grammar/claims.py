@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Final
 
 from scene_graph import ABOVE, PREDICATES, UP, Phrase
 
@@ -15,6 +16,10 @@ from ..parsed import ParsedRelation, Said, none_but
 from ..terms import Kind, Term, Words, is_any_place
 from .meaning import Link
 from .nominal import UPON
+
+
+#: What all places stand on.
+_TABLE: Final = frozenset({"table", "floor", "ground", "tabletop", "desk", "surface"})
 
 
 class Claims:
@@ -61,6 +66,8 @@ class Claims:
     def _add(
         self, subjects: Sequence[Term], phrase: Phrase, denied: bool, written: Words, object_: Term
     ) -> None:
+        if denied and object_.words.text in _TABLE:
+            object_ = replace(object_, words=replace(object_.words, text="stack"), kind=Kind.EVERY)
         bounded = all(term.kind is Kind.COUNT and not term.least for term in subjects)
         none = all(term.kind is Kind.NO for term in subjects)
         if is_any_place(object_) and (bounded or none):

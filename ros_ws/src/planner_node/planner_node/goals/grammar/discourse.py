@@ -168,7 +168,9 @@ class Discourse(Linking):
         self._put_down()
         if self._mentioned is not None:
             raise unclear(self._mentioned)
-        if not item.told:
+        if item.told:
+            self._name(item.term)
+        else:
             self._mentioned = item.term
         self.subjects, self.object, self.link = [item.term], None, None
         if item.term.is_place:

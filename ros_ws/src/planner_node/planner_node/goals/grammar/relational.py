@@ -22,7 +22,7 @@ def _relation(w: Word, who: Names, d: Word | None = None) -> Link | None:
     places = [term.is_place or term.words.text in ("it", "they") for term in who.terms]
     if phrase.needs_place and not all(places):
         return None
-    if w.text == "->" and any(term.is_place for term in who.terms):
+    if w.text in ("->", "top of") and any(term.is_place for term in who.terms):
         return None
     if len({term.is_place for term in who.terms}) > 1:
         return None

@@ -146,6 +146,13 @@ def _told(b: Term) -> tuple[Item, ...]:
     return (Mention(b, told=True),)
 
 
+def _told_of_both(s: Names) -> tuple[Item, ...] | None:
+    """ "red and blue are friends, so they share a stack"."""
+    if any(term.kind is not Kind.THE or term.is_place for term in s.terms) or s.either:
+        return None
+    return tuple(Mention(term, told=True) for term in s.terms)
+
+
 #: An item, and how it is joined to what stands in front of it.
 Joined = tuple[str, tuple[Item, ...]]
 
