@@ -98,6 +98,14 @@ def _one_tower(s: Names) -> Relate | None:
     return Relate(Names((term,)), (Link(term.words, how="same"),))
 
 
+def _put_with(s: Names, o: Names) -> Relate | None:
+    """ "keep red with blue"."""
+    terms = (*s.terms, *o.terms)
+    if s.either or o.either or any(term.kind is not Kind.THE or term.is_place for term in terms):
+        return None
+    return Relate(s, (Link(o.terms[0].words, how="same", names=o),))
+
+
 def _nothing_put(n: Word, to: tuple[Link, ...]) -> Relate | None:
     """ "no stacking on yellow"."""
     nothing = term_of(words_of(n, text="block"), Kind.NO, least=0, most=0)

@@ -19,6 +19,15 @@ from .nominal import INSIDE, UPON
 _BESIDE = Phrase(PREDICATES[BESIDE])
 
 
+def _bounded(term: Term) -> bool:
+    """Whether it is "at most two blocks"."""
+    return term.kind is Kind.COUNT and not term.least and not term.bare
+
+
+def _every_place(words: Words) -> Term:
+    return Term(replace(words, text="stack"), Kind.EVERY)
+
+
 def _any_of(term: Term) -> Term:
     """ "not in a stack with any box": with none of them."""
     some = term.kind is Kind.COUNT and (term.least, term.most) == (1, None)
@@ -59,6 +68,13 @@ class Linking(Anaphora):
             return
         if how in ("same", "different"):
             others = self._who(link.names) if link.names else []
+            (first, *more) = subjects
+            if how == "same" and not (others or more or denied) and _bounded(first):
+                self._add([first], INSIDE, False, written, _every_place(written))
+                self.subjects, self.object = [first], None
+                return
+            if link.names and link.names.either and not denied:
+                raise unclear_words(written)
             if others and len(subjects) == 1 and subjects[0].kind is Kind.NO:
                 subjects = [replace(subjects[0], kind=Kind.EVERY, least=1, most=None)]
                 denied = not denied  # "no box in the same stack as the ball"
@@ -95,6 +111,16 @@ class Linking(Anaphora):
             self._add(subjects[:1], _BESIDE, denied, written, subjects[1])
             self._name(*subjects)
             self._neighbors = list(subjects)
+            self.subjects, self.object = subjects, None
+            return
+        if how == "upon each other":
+            every = len(subjects) == 1 and subjects[0].kind is Kind.EVERY and not subjects[0].bare
+            if not denied or not (every or len(subjects) == 2):
+                raise unclear_words(written)
+            one, other = subjects * (3 - len(subjects))
+            self._add([one], UPON, True, written, other)
+            if one != other:
+                self._add([other], UPON, True, written, one)
             self.subjects, self.object = subjects, None
             return
         if how == "not upon each other":

@@ -43,6 +43,11 @@ def _either_name(n: tuple[Words, bool]) -> Names | None:
     return Names((term_of(n[0], Kind.EVERY),), either=True) if n[1] else None
 
 
+def _all_colored(a: Word, b: Word) -> Names:
+    """ "everything green or yellow"."""
+    return Names(tuple(term_of(words_of(one), Kind.EVERY) for one in (a, b)))
+
+
 def _both(who: Names) -> Names:
     return replace(who, both=True)
 

@@ -125,7 +125,7 @@ def _edge(w: Word, how: str, p: Term | None) -> Link | None:
 
 
 def _together(w: Word, who: Names | None = None) -> Link | None:
-    if who is not None and (who.either or who.denied):
+    if who is not None and who.denied:
         return None
     return Link(words_of(w), how="same", names=who)
 
@@ -148,6 +148,10 @@ def _each_other(r: Word) -> Link | None:
 
 def _not_upon_each_other(w: Word) -> Link:
     return Link(words_of(w), UPON, how="not upon each other")
+
+
+def _upon_each_other(w: Word) -> Link:
+    return Link(words_of(w), UPON, how="upon each other")
 
 
 def _alone(w: Word) -> Link:
@@ -244,6 +248,12 @@ def _not_directly(to: Link) -> tuple[Link, ...] | None:
 
 def _or(to: Link, m: tuple[Link, ...]) -> tuple[Link, ...]:
     return (replace(to, how=to.how or "or"), *m)
+
+
+def _not_there(to: Link, p: Term) -> tuple[Link, ...] | None:
+    """ "in the left stack, not the right one"."""
+    there = to.names is not None and all(term.is_place for term in to.names.terms)
+    return (to,) if there and not to.denied and to.names != Names((p,)) else None
 
 
 def _neither(to: Link, m: Link) -> tuple[Link, ...]:

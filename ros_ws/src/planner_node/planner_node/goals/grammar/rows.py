@@ -104,6 +104,9 @@ def _leveled(
         where[0] = "bottom"
     same = {"upon": "then", "over": "then", "start": "bottom", "under": "then", "first": "bottom"}
     where = [same.get(how, how) for how in where]
+    behind = p is not None and p.words.offset > levels[0][1].words.offset
+    if behind and h is None and sorted(where) == ["bottom", "top"]:
+        return None  # "red on top, blue at the bottom of stack 1" leaves open what is between
     blocks = [block for _, block in levels]
     ordered = _ordered(where, blocks)
     if ordered is None:
