@@ -17,7 +17,6 @@ from ..terms import Kind, Term, Words, is_any_place
 from .meaning import Link
 from .nominal import UPON
 
-
 #: What all places stand on.
 _TABLE: Final = frozenset({"table", "floor", "ground", "tabletop", "desk", "surface"})
 

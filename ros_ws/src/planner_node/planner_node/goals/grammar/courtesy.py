@@ -11,11 +11,13 @@ from .lexicon import COURTESY, COURTESY_DENIED, COURTLY
 #: When it is to be so: "when everything's been done".
 _WHEN: Final = frozenset({"when", "once", "after"})
 _BEEN: Final = frozenset({
-    "everything", "all", "it", "this", "that", "you", "we", "i", "they", "the", "robot", "work", "job",
-    "task", "building", "stacking", "thing", "whole", "your", "our",
+    "everything", "all", "it", "this", "that", "you", "we", "i", "they", "the", "robot", "work",
+    "job", "task", "building", "stacking", "thing", "whole", "your", "our",
     "is", "are", "am", "has", "have", "had", "been", "'s", "be", "get", "gets", "got", "will",
 })  # fmt: skip
-_DONE: Final = frozenset({"done", "finished", "ready", "complete", "completed", "finish", "through"})
+_DONE: Final = frozenset(
+    {"done", "finished", "ready", "complete", "completed", "finish", "through"}
+)
 _DENIALS: Final = frozenset({"not", "no"})
 
 

@@ -91,7 +91,7 @@ def _leveled(
     for number, how in enumerate(where):
         if how.startswith("upon "):
             # Of a tower that is told from below, each is on the one before.
-            if not number or "bottom" != where[0] or how[5:] != levels[number - 1][1].words.text:
+            if not number or where[0] != "bottom" or how[5:] != levels[number - 1][1].words.text:
                 return None
             where[number] = "then"
     if "start" in where:
