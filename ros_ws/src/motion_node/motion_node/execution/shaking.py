@@ -10,10 +10,11 @@ from ..robots.joints import JointValues
 #: Stretches that are judged as one: at least so long, by the driver's clock, and so many states.
 _STRETCH_SECONDS: Final = 2.0
 _STRETCH_STATES: Final = 60
-#: Who goes this many times as far as he gets, and never stands still for so long [s], shakes.
+#: Who goes this many times as far as he ever gets from where he began, and never stands still for
+#: so long [s], shakes. An arm that picks and places may be back where it was when a stretch ends.
 _TO_AND_FRO: Final = 10.0
 _STANDING_SECONDS: Final = 0.5
-#: So many stretches in a row; an arm that picks and places gets somewhere in one of them.
+#: So many stretches in a row.
 _STRETCHES: Final = 3
 
 
@@ -21,7 +22,8 @@ class Shaking:
     """Judges positions stretch by stretch."""
 
     def __init__(self) -> None:
-        self._in_a_row, self._since, self._states, self._way, self._step = 0, 0.0, 0, 0.0, 0.0
+        self._in_a_row, self._since, self._states = 0, 0.0, 0
+        self._way = self._got = self._step = 0.0
         self._first: JointValues | None = None
         self._last: JointValues | None = None
 
@@ -39,10 +41,10 @@ class Shaking:
             return ""
         self._states += 1
         self._way += float(max(positions.furthest(last)))
+        self._got = max(self._got, *positions.furthest(first))
         self._last = positions
         if stamp - self._since >= _STRETCH_SECONDS and self._states >= _STRETCH_STATES:
-            got = float(max(positions.furthest(first)))
-            shaken = self._way > _TO_AND_FRO * got
+            shaken = self._way > _TO_AND_FRO * self._got
             self._in_a_row = self._in_a_row + 1 if shaken else 0
             self._step = self._way / self._states
             self._begin(stamp, positions)
@@ -54,5 +56,5 @@ class Shaking:
         )
 
     def _begin(self, stamp: float, positions: JointValues) -> None:
-        self._since, self._states, self._way = stamp, 0, 0.0
+        self._since, self._states, self._way, self._got = stamp, 0, 0.0, 0.0
         self._first = self._last = positions
