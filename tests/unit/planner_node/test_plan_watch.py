@@ -319,6 +319,15 @@ def test_a_block_that_is_measured_badly_where_it_stands_contradicts_nothing() ->
         assert not watch.see(item.frame(fallen={"grey_box": (x, y + 0.02, z + 0.1)}))
 
 
+def test_a_block_of_which_the_hand_shows_a_part_contradicts_nothing() -> None:
+    _, watch, course = course_of(2)
+    x, y, z = centre(0, 0)
+    for item in course:
+        part = {"red_box": (x + 0.031, y, z + 0.01)}
+        assert not watch.see(item.frame(fallen=part, hidden=(0.7, 0.0, 0.0)))
+        assert watch.sight is not None and watch.sight.sight is Sight.HIDDEN
+
+
 def test_of_two_blocks_that_look_alike_either_may_be_the_first() -> None:
     """The left one is named first: the names change hands as one is carried past the other."""
     stacks: Stacks = (("red_box",), ("red_box_2", "blue_box"), ())

@@ -203,7 +203,7 @@ class Evidence:
                     kind, where = Kind.ELSEWHERE, item.position_world
                 self._suspect(Finding(name, kind, options[-1], where, 1 + doubt + held), steps)
             elif item is not None and item.confidence >= PLAINLY and name != about_to_rise:
-                # It may be what hides where it was to be; what the hand is at is hidden by the hand.
+                # It may be what hides where it was to be; the hand hides what it is at.
                 where = item.position_world
                 finding = Finding(name, Kind.ELSEWHERE, options[-1], where, FOREIGN_FRAMES)
                 self._suspect(finding, steps)
