@@ -82,8 +82,6 @@ def in_one_place(blocks: Sequence[Term], same: bool, denied: bool) -> list[Parse
         if denied and blocks[0].exact != 2:
             return None
         blocks = [blocks[0], blocks[0]]  # "the red ones in the same stack"
-    elif len(blocks) == 2 and all(map(_all_or_one, blocks)):
-        pass  # "no box in the same stack as the ball"
     elif (
         len(blocks) < 2
         or any(term.kind is not Kind.THE or term.is_place for term in blocks)
@@ -96,11 +94,6 @@ def in_one_place(blocks: Sequence[Term], same: bool, denied: bool) -> list[Parse
         ParsedRelation(one, Phrase(predicate), other, negated=True)
         for one, other in permutations(blocks, 2)
     ]
-
-
-def _all_or_one(term: Term) -> bool:
-    every = term.kind is Kind.EVERY and not (term.bare or term.others or term.exact)
-    return (every or term.kind is Kind.THE) and not term.is_place
 
 
 def none_but(

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from scene_graph import ABOVE, UP, Phrase
+from scene_graph import Phrase
 
 from ..objections import unclear
 from ..terms import Kind, Term
@@ -43,26 +43,13 @@ class Anaphora(Claims):
             found = subject  # "red not on blue, put it on green"
         elif phrase is not None and (carried or self._opposite(phrase)):
             found = self.object
-        elif self._onward and self.link is not None and self._upwards(phrase):
-            found = subject
         elif phrase == UPON and self.link is not None:
             # On what already carries a block nothing else can be put.
             before, denied, _ = self.link
             found = subject if before == phrase and not denied else None
-        if subject is not None and subject.kind is Kind.NO:
-            found = self.object  # "nothing on red, it is to be clear"
         if found is None or found.kind is not Kind.THE:
             raise unclear(term)
         return found
-
-    def _upwards(self, phrase: Phrase | None) -> bool:
-        """Whether it goes on upwards: "red goes on blue, and above it goes green"."""
-        assert self.link is not None
-        before, denied, _ = self.link
-        return not denied and all(
-            one is not None and one.predicate.name in (UP, ABOVE) and not one.inverse
-            for one in (before, phrase)
-        )
 
     def _opposite(self, phrase: Phrase) -> bool:
         before = self.link[0] if self.link is not None else phrase

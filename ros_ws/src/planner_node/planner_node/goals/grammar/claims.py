@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Final
 
 from scene_graph import ABOVE, PREDICATES, UP, Phrase
 
@@ -16,9 +15,6 @@ from ..parsed import ParsedRelation, Said, none_but
 from ..terms import Kind, Term, Words, is_any_place
 from .meaning import Link
 from .nominal import UPON
-
-#: What all places stand on.
-_TABLE: Final = frozenset({"table", "floor", "ground", "tabletop", "desk", "surface"})
 
 
 class Claims:
@@ -45,15 +41,9 @@ class Claims:
         self._sides = False
         #: The last two that were said to be in one place.
         self._pair: list[Term] = []
-        #: The last two that were said to be beside each other.
-        self._neighbors: list[Term] = []
         #: Who stands at the bottom of a tower of which it is not yet said where it is.
         self._foot: Term | None = None
         self._footed: Term | None = None
-        #: What was told to be cleared: it is no longer clear when something is put there.
-        self._cleared: list[Said] = []
-        #: Whether the place of the clause is told first: "on it goes red".
-        self._onward = False
         #: How many relations there were before the sentence.
         self._before = 0
 
@@ -65,16 +55,12 @@ class Claims:
     def _add(
         self, subjects: Sequence[Term], phrase: Phrase, denied: bool, written: Words, object_: Term
     ) -> None:
-        if denied and object_.words.text in _TABLE:
-            object_ = replace(object_, words=replace(object_.words, text="stack"), kind=Kind.EVERY)
         bounded = all(term.kind is Kind.COUNT and not term.least for term in subjects)
         none = all(term.kind is Kind.NO for term in subjects)
         if is_any_place(object_) and (bounded or none):
             object_ = replace(object_, kind=Kind.EVERY)  # "at most two blocks in any stack"
         if is_any_place(object_) and not (bounded or none):
             raise unclear(object_)
-        if object_.is_every_place and not denied and any(t.kind is Kind.THE for t in subjects):
-            raise unclear(object_)  # one block is not in every stack
         if denied and any(term.kind in (Kind.NO, Kind.COUNT) for term in subjects):
             raise unclear(subjects[0])
         if denied and len(subjects) == 1 and subjects[0].kind is Kind.EVERY:
@@ -103,7 +89,6 @@ class Claims:
             if together and object_.is_place and phrase == UPON and not denied:
                 # Several blocks on a place cannot all stand directly on it.
                 meaning = phrase._replace(predicate=PREDICATES[ABOVE])
-            self._cover(subject, meaning, object_, denied)
             self.relations.append(ParsedRelation(subject, meaning, object_, denied))
 
     def _among_others(self, subject: Term, phrase: Phrase, object_: Term) -> Term:
@@ -183,17 +168,6 @@ class Claims:
         if found is None:
             raise unclear(one)
         self.relations.append(found)
-
-    def _cover(self, subject: Term, phrase: Phrase, object_: Term, denied: bool) -> None:
-        """ "clear red, then put blue on it"."""
-        if phrase != UPON or denied or subject.kind is not Kind.THE or object_.is_place:
-            return
-        covered = [
-            said
-            for said in self._cleared
-            if isinstance(said, ParsedRelation) and key_of(said.object) == key_of(object_)
-        ]
-        self.relations = [said for said in self.relations if said not in covered]
 
     def _nothing_on(self, term: Term) -> None:
         nothing = Term(Words("block", term.words.offset), Kind.NO, 0, 0)

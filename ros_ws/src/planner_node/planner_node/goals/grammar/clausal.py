@@ -22,11 +22,6 @@ def _with_verb(
     return relate(s, to, v) if asked(v, s, wished) else None
 
 
-def _stacks(s: Names, v: Verb, to: Link, wished: bool = False) -> Relate | None:
-    """ "red's stack is left of blue's"."""
-    return relate(s, (to,), v) if asked(v, s, wished) else None
-
-
 def _there_with(
     m: tuple[Link, ...], s: Names, v: Verb, to: tuple[Link, ...], wished: bool = False
 ) -> Relate | None:
@@ -73,26 +68,10 @@ def _different_for(s: Names) -> Relate:
     return Relate(s, (Link(s.terms[0].words, how="different"),))
 
 
-def _own(s: Names, v: Verb | None = None, wished: bool = False) -> Relate | None:
-    """ "every box has a stack of its own"."""
-    one = len(s.terms) == 1 and s.terms[0].kind is Kind.THE
-    link = Link(s.terms[0].words, how="alone" if one else "different")
-    return relate(s, (link,), v) if asked(v, s, wished) else None
-
-
 def _no_two(n: tuple[Words, bool], v: Verb | None = None) -> Relate | None:
     if v and v.denied:
         return None
     return Relate(Names((term_of(n[0], Kind.EVERY),)), (Link(n[0], how="different"),))
-
-
-def _no_two_of(
-    s: Names | None = None, n: tuple[Words, bool] | None = None, v: Verb | None = None
-) -> Relate | None:
-    """ "no two of red, blue and green share a stack"."""
-    if n is not None:
-        return _no_two(n, v)
-    return None if s is None or s.either or (v and v.denied) else _different_for(s)
 
 
 def _edge_is(e: Link, b: Names, v: Verb | None = None, wished: bool = False) -> Relate | None:
@@ -112,8 +91,6 @@ def _what_stands(to: tuple[Link, ...], v: Verb, s: Names) -> Relate | None:
     """ "the block on green should be yellow"; "the one below" may be any that is there."""
     if len(to) > 1 or to[0].phrase is None or to[0].phrase.predicate != UPON.predicate:
         return None
-    if len(s.terms) == 1 and s.terms[0].kind is Kind.COUNT and not (v.denied or v.may or v.past):
-        return Relate(s, to)
     return _what(to, v, s)
 
 
@@ -139,8 +116,7 @@ def _only(
 ) -> Relate | None:
     if (v and v.denied) or s.either or s.denied or len(to) > 1 or to[0].denied:
         return None
-    kinds = {term.kind for term in s.terms}
-    if (v and v.may and kinds == {Kind.THE}) or (kinds == {Kind.EVERY} and _plain(s, to[0], o, v)):
+    if v and v.may and all(term.kind is Kind.THE for term in s.terms):
         nothing = term_of(Words("block", 0, 0), Kind.NO, least=0, most=0, but=s.terms)
         return Relate(Names((nothing,)), to)
     if any(term.is_place for term in s.terms) or not asked(v, s, wished):
@@ -148,24 +124,6 @@ def _only(
     if all(term.kind is Kind.COUNT for term in s.terms):
         return Relate(s, to) if len(s.terms) == 1 else None
     return Relate(only_of(s, o), to)
-
-
-def _plain(s: Names, to: Link, o: Word | str, v: Verb | None) -> bool:
-    """Whether it is "only boxes", in a place: those that are there are no others."""
-    if v is None and any(" " in term.words.text for term in s.terms):
-        return False
-    if isinstance(o, Word) and o.offset > s.terms[0].words.offset:
-        return False
-    place = to.names is not None and all(term.is_place for term in to.names.terms)
-    return place and all(t.exact is None and not t.bare and not t.others for t in s.terms)
-
-
-def _only_for(p: Names, s: Names) -> Relate | None:
-    """ "stack 1 is for boxes only"."""
-    if s.either or s.denied or any(term.kind not in (Kind.THE, Kind.EVERY) for term in s.terms):
-        return None
-    nothing = term_of(Words("block", 0, 0), Kind.NO, least=0, most=0, but=s.terms)
-    return Relate(Names((nothing,)), (Link(p.terms[0].words, INSIDE, p),))
 
 
 def but(s: Names, e: Names) -> Names | None:

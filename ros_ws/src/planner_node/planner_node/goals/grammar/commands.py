@@ -15,17 +15,9 @@ from .nominal import INSIDE, UPON, counted_after, term_of, words_of
 from .verbal import Verb, asked, before, is_place, relate
 
 
-def _told_first(to: tuple[Link, ...], s: Names) -> tuple[Link, ...]:
-    """ "cleared red" is what is done, "red is clear" how it is to be."""
-    if before(to, s) and to[0].how == "clear":
-        return (replace(to[0], how="cleared"), *to[1:])
-    return to
-
-
 def _bare(s: Names, to: tuple[Link, ...]) -> Relate | None:
     if before(to, s) and to[0].denied:
         return None
-    to = _told_first(to, s)
     aside = to[0].phrase is not None and to[0].phrase.predicate.name == LEFT
     every = any(term.kind is Kind.EVERY for term in s.terms)
     if every and (to[0].denied or (aside and s.terms[0].words.text == "block")):
@@ -72,7 +64,7 @@ def _command(p: bool, s: Names, to: tuple[Link, ...] = (), e: Link | None = None
         return None if p or len(s.terms) > 1 else Relate(s, (e,))
     if before(to, s) and to[0].denied:
         return None
-    return relate(s, _told_first(to, s), Verb(p))
+    return relate(s, to, Verb(p))
 
 
 def _command_of_that(p: bool, s: Names, to: tuple[Link, ...]) -> Relate | None:
@@ -98,20 +90,6 @@ def _one_tower(s: Names) -> Relate | None:
     return Relate(Names((term,)), (Link(term.words, how="same"),))
 
 
-def _put_with(s: Names, o: Names) -> Relate | None:
-    """ "keep red with blue"."""
-    terms = (*s.terms, *o.terms)
-    if s.either or o.either or any(term.kind is not Kind.THE or term.is_place for term in terms):
-        return None
-    return Relate(s, (Link(o.terms[0].words, how="same", names=o),))
-
-
-def _nothing_put(n: Word, to: tuple[Link, ...]) -> Relate | None:
-    """ "no stacking on yellow"."""
-    nothing = term_of(words_of(n, text="block"), Kind.NO, least=0, most=0)
-    return Relate(Names((nothing,)), to) if n.text == "no" and len(to) == 1 else None
-
-
 def _command_of_it(p: bool, to: tuple[Link, ...]) -> Relate | None:
     return None if p else Relate(None, to)
 
@@ -121,7 +99,7 @@ def _puts(w: Word) -> bool | None:
 
 
 def _clear_it(s: Names, w: Word) -> Relate | None:
-    return Relate(s, (Link(words_of(w), how="cleared"),))
+    return Relate(s, (Link(words_of(w), how="clear"),))
 
 
 def _upon_that(w: Word) -> Word | None:

@@ -8,16 +8,6 @@ from typing import Final
 
 from .lexicon import COURTESY, COURTESY_DENIED, COURTLY
 
-#: When it is to be so: "when everything's been done".
-_WHEN: Final = frozenset({"when", "once", "after"})
-_BEEN: Final = frozenset({
-    "everything", "all", "it", "this", "that", "you", "we", "i", "they", "the", "robot", "work",
-    "job", "task", "building", "stacking", "thing", "whole", "your", "our",
-    "is", "are", "am", "has", "have", "had", "been", "'s", "be", "get", "gets", "got", "will",
-})  # fmt: skip
-_DONE: Final = frozenset(
-    {"done", "finished", "ready", "complete", "completed", "finish", "through"}
-)
 _DENIALS: Final = frozenset({"not", "no"})
 
 
@@ -27,12 +17,6 @@ def courtesies(words: Sequence[str], start: int) -> Iterator[int]:
     What is no trouble may be denied, what is possible may not: "if it is not possible" is a
     condition.
     """
-    if words[start] in _WHEN:
-        for at in range(start + 1, len(words)):
-            if words[at] in _DONE and at > start + 1:
-                yield at + 1
-            if words[at] not in _BEEN:
-                break
     if words[start] not in ("if", "when", "whenever"):
         return
     denied = said = False

@@ -113,9 +113,6 @@ class Discourse(Linking):
             if (either and not denied) or (both and denied):
                 raise unclear(subjects[0])  # "not both": none, or one of them?
         self._check_chain(subjects, links)
-        self._onward = item.subject is not None and item.links[0].words.offset < (
-            item.subject.terms[0].words.offset
-        )
         for link in links:
             if link.chained:
                 subjects = [self.object] if self.object else subjects
@@ -168,9 +165,7 @@ class Discourse(Linking):
         self._put_down()
         if self._mentioned is not None:
             raise unclear(self._mentioned)
-        if item.told:
-            self._name(item.term)
-        else:
+        if not item.told:
             self._mentioned = item.term
         self.subjects, self.object, self.link = [item.term], None, None
         if item.term.is_place:
@@ -214,11 +209,8 @@ class Discourse(Linking):
         off, taken = self._off, self._put()
         if off is None or off.names is None or off.phrase is None:
             raise untold(taken[0])
-        before = len(self.relations)
         for one in self._who(off.names):
             self._add(taken, off.phrase, True, off.words, one)
-        if all(term.several for term in taken):
-            self._cleared += self.relations[before:]
         self.subjects, self.object = taken, None
 
     def _again(self, item: Again) -> None:

@@ -142,7 +142,7 @@ def lattice_of(tokens: Sequence[Token], literals: Collection[str]) -> Lattice:
 
 def _meant(word: str, known: frozenset[str], alone: Collection[str]) -> dict[str, float]:
     """What a word may be, and at what cost."""
-    found = {word: 0.0} if word != "'s" else {word: 0.0, "is": 0.0}
+    found = {word: 0.0}
     if word not in alone:
         found |= dict.fromkeys(mended(word, known - {word}), _MENDED)
     return found

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from scene_graph import ABOVE, BESIDE, LEFT, PREDICATES, Phrase
+from scene_graph import ABOVE, BESIDE, PREDICATES, Phrase
 
 from ..objections import unclear
 from ..parsed import ParsedRelation, in_one_place, none_but
@@ -19,21 +19,6 @@ from .nominal import INSIDE, UPON
 _BESIDE = Phrase(PREDICATES[BESIDE])
 
 
-def _bounded(term: Term) -> bool:
-    """Whether it is "at most two blocks"."""
-    return term.kind is Kind.COUNT and not term.least and not term.bare
-
-
-def _every_place(words: Words) -> Term:
-    return Term(replace(words, text="stack"), Kind.EVERY)
-
-
-def _any_of(term: Term) -> Term:
-    """ "not in a stack with any box": with none of them."""
-    some = term.kind is Kind.COUNT and (term.least, term.most) == (1, None)
-    return replace(term, kind=Kind.EVERY) if some else term
-
-
 class Linking(Anaphora):
     """Says relations of their subjects."""
 
@@ -42,16 +27,8 @@ class Linking(Anaphora):
     ) -> None:
         how = link.how if link.how != "or" else ""
         written = link.words
-        if how == "buried":
-            self._clear(subjects, not denied)
-            return
-        if how in ("clear", "cleared"):
-            before = len(self.relations)
+        if how == "clear":
             self._clear(subjects, denied)
-            if how == "cleared":
-                self._cleared += self.relations[before:]
-            return
-        if how == "side" and not carried and self._aside(subjects, link, denied):
             return
         if how == "side":
             if any(self._is_it(term) for term in (item.subject.terms if item.subject else ())):
@@ -68,18 +45,6 @@ class Linking(Anaphora):
             return
         if how in ("same", "different"):
             others = self._who(link.names) if link.names else []
-            (first, *more) = subjects
-            if how == "same" and not (others or more or denied) and _bounded(first):
-                self._add([first], INSIDE, False, written, _every_place(written))
-                self.subjects, self.object = [first], None
-                return
-            if link.names and link.names.either and not denied:
-                raise unclear_words(written)
-            if others and len(subjects) == 1 and subjects[0].kind is Kind.NO:
-                subjects = [replace(subjects[0], kind=Kind.EVERY, least=1, most=None)]
-                denied = not denied  # "no box in the same stack as the ball"
-            if denied:
-                others = [_any_of(other) for other in others]
             blocks = [*subjects, *others]
             if not others and len(blocks) == 1 and blocks[0].kind is Kind.THE and self.object:
                 blocks.append(self.object)  # "red under blue, in the same stack"
@@ -110,17 +75,6 @@ class Linking(Anaphora):
                 raise unclear(subjects[0])
             self._add(subjects[:1], _BESIDE, denied, written, subjects[1])
             self._name(*subjects)
-            self._neighbors = list(subjects)
-            self.subjects, self.object = subjects, None
-            return
-        if how == "upon each other":
-            every = len(subjects) == 1 and subjects[0].kind is Kind.EVERY and not subjects[0].bare
-            if not denied or not (every or len(subjects) == 2):
-                raise unclear_words(written)
-            one, other = subjects * (3 - len(subjects))
-            self._add([one], UPON, True, written, other)
-            if one != other:
-                self._add([other], UPON, True, written, one)
             self.subjects, self.object = subjects, None
             return
         if how == "not upon each other":
@@ -164,8 +118,6 @@ class Linking(Anaphora):
                 if denied:
                     raise unclear_words(written)
                 self._add(subjects, _BESIDE, False, written, one)
-        if phrase == _BESIDE and not denied and len(subjects) == len(objects) == 1:
-            self._neighbors = [*subjects, *objects]
         if len(subjects) == 2 and phrase == INSIDE and not denied:
             self._pair = subjects
         if self._footed is not None and objects[-1].is_place and not denied:
@@ -173,17 +125,6 @@ class Linking(Anaphora):
             self._footed = None
         self.subjects, self.object = list(subjects), objects[-1]
         self.link = (phrase, denied, written)
-
-    def _aside(self, subjects: Sequence[Term], link: Link, denied: bool) -> bool:
-        """ "red and blue in neighbouring stacks, red on the left": left of blue."""
-        others = [one for one in self._neighbors if key_of(one) not in map(key_of, subjects)]
-        side = link.names.terms[0].words.side if link.names else None
-        if denied or len(subjects) != 1 or len(others) != 1 or side not in ("left", "right"):
-            return False
-        phrase = Phrase(PREDICATES[LEFT], inverse=side == "right")
-        self._add(subjects, phrase, False, link.words, others[0])
-        self.subjects, self.object = list(subjects), None
-        return True
 
     def _objects(
         self, link: Link, denied: bool, subjects: Sequence[Term], carried: bool

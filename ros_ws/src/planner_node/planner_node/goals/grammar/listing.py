@@ -24,28 +24,13 @@ def _slipped(words: Words) -> bool:
     return words.stop - words.offset != len(words.text)
 
 
-def _pair(t: Term, u: Term, c: Word | None = None) -> Names | None:
-    return None if _announced(t, c) else _joined((t, u))
-
-
-def _announced(t: Term, c: Word | None) -> bool:
-    """ "two things: red …" are not one with another."""
-    return c is not None and c.text != "," and t.kind is not Kind.THE
+def _pair(t: Term, u: Term) -> Names | None:
+    return _joined((t, u))
 
 
 def _either_of(w: Word) -> Names:
     """ "nothing on either": of the two that were named, each."""
     return Names((term_of(words_of(w, text="they"), Kind.EVERY, bare=True),), either=True)
-
-
-def _either_name(n: tuple[Words, bool]) -> Names | None:
-    """ "not on either of the red ones"."""
-    return Names((term_of(n[0], Kind.EVERY),), either=True) if n[1] else None
-
-
-def _all_colored(a: Word, b: Word) -> Names:
-    """ "everything green or yellow"."""
-    return Names(tuple(term_of(words_of(one), Kind.EVERY) for one in (a, b)))
 
 
 def _both(who: Names) -> Names:
@@ -56,9 +41,7 @@ def _either(t: Term, u: Term) -> Names:
     return Names((t, u), either=True)
 
 
-def _series(t: Term, r: Names, c: Word | None = None) -> Names | None:
-    if _announced(t, c):
-        return None
+def _series(t: Term, r: Names) -> Names | None:
     joined = _joined((t, *r.terms))
     return joined and replace(joined, either=r.either)
 

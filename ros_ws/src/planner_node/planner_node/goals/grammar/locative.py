@@ -30,10 +30,6 @@ def _side_one(s: Word) -> Term:
     return term_of(words_of(s, text=f"{s.means} stack"))
 
 
-def _middle(w: Word) -> Term:
-    return term_of(words_of(w, text="middle stack"))
-
-
 def _outer_side(s: Word) -> Term | None:
     return _side_one(s) if s.means != "middle" else None  # of the places, or of the tower?
 

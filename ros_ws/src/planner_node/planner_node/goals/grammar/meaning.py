@@ -36,9 +36,7 @@ class Link:
     Attributes:
         how: what it is where it is no phrase: ``top``, ``bottom`` (of ``names``, or of what was
             spoken of), ``side`` (a phrase, but of a side), ``there``, ``alone``, ``clear``,
-            ``cleared`` (before something is put there), ``buried``,
-            ``each other``, ``upon each other``, ``not upon each other``,
-            ``compared`` (a phrase, to the other of two
+            ``each other``, ``not upon each other``, ``compared`` (a phrase, to the other of two
             that are in one place), ``same``, ``different`` (in one place as ``names``, or as one
             another), ``where`` (another one is now), ``elsewhere``; ``or`` of one that may hold as
             well as the next.

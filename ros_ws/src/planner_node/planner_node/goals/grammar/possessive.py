@@ -34,15 +34,6 @@ def _has(
     return has_them(s, o, v, Link(s.terms[0].words, INSIDE, s))
 
 
-def _company(t: Names, o: Names, v: Verb | None = None, wished: bool = False) -> Relate | None:
-    """ "the stack with red must contain no box": what is in a stack together with others."""
-    if any(term.kind is not Kind.THE for term in t.terms) or t.either or t.denied:
-        return None
-    if any(map(is_place, (*t.terms, *o.terms))) or not asked(v, t, wished):
-        return None
-    return Relate(o, (Link(t.terms[0].words, how="same", names=t),), bool(v and v.denied))
-
-
 def _has_on_it(
     s: Names, o: Names, p: Link, v: Verb | None = None, wished: bool = False
 ) -> Relate | None:
@@ -61,16 +52,9 @@ def _has_at_end(
 
 
 def _covered(s: Names, o: Names, v: Verb | None = None, wished: bool = False) -> Relate | None:
-    if s.either or not asked(v, s, wished) or any(map(is_place, (*s.terms, *o.terms))):
+    if s.either or not asked(v, s, wished) or any(term.is_place for term in (*s.terms, *o.terms)):
         return None
     return has_them(s, o, v, Link(s.terms[0].words, UPON, s))
-
-
-def _tops(s: Names, o: Names, v: Verb | None = None, wished: bool = False) -> Relate | None:
-    """ "red is to crown blue"."""
-    if s.either or not asked(v, s, wished) or any(map(is_place, (*s.terms, *o.terms))):
-        return None
-    return relate(s, (Link(o.terms[0].words, UPON, o),), v)
 
 
 def _number_of(

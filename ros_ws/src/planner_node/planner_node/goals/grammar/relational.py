@@ -22,7 +22,7 @@ def _relation(w: Word, who: Names, d: Word | None = None) -> Link | None:
     places = [term.is_place or term.words.text in ("it", "they") for term in who.terms]
     if phrase.needs_place and not all(places):
         return None
-    if w.text in ("->", "top of") and any(term.is_place for term in who.terms):
+    if w.text == "->" and any(term.is_place for term in who.terms):
         return None
     if len({term.is_place for term in who.terms}) > 1:
         return None
@@ -58,18 +58,6 @@ def _per_place(p: Term) -> Link:
     return Link(p.words, INSIDE, Names((p,)))
 
 
-def _on_head(w: Word) -> Link | None:
-    """ "on its head"."""
-    if w.phrase is None or w.phrase != UPON:
-        return None
-    return Link(words_of(w), UPON, Names((term_of(words_of(w, text="it")),)))
-
-
-def _in_any(w: Word) -> Link:
-    stack = term_of(words_of(w, text="stack"), Kind.COUNT)
-    return Link(words_of(w), INSIDE, Names((stack,)))
-
-
 def _at_side(w: Word, t: Word, s: Word) -> Link | None:
     if w.text not in ("on", "in", "at") or t.text != "the" or s.text.startswith("far"):
         return None
@@ -83,13 +71,6 @@ def _in_place_aside(r: Word, who: Names) -> Link | None:
     return Link(words_of(r), r.phrase, who, adjacent=True)
 
 
-def _of_stacks(r: Word, who: Names, d: Word | None = None) -> Link | None:
-    """ "left of blue's stack"."""
-    if r.phrase is None or r.phrase.predicate.name not in (*_SIDEWAYS, BESIDE):
-        return None
-    return _relation(r, who, d)
-
-
 def _in_place_beside(r: Word, who: Names) -> Link | None:
     if r.phrase is None or r.phrase.predicate.name != BESIDE:
         return None
@@ -98,10 +79,6 @@ def _in_place_beside(r: Word, who: Names) -> Link | None:
 
 def _clear(w: Word) -> Link:
     return Link(words_of(w), how="clear")
-
-
-def _buried(w: Word) -> Link:
-    return Link(words_of(w), how="buried")
 
 
 def _there(w: Word) -> Link:
@@ -125,7 +102,7 @@ def _edge(w: Word, how: str, p: Term | None) -> Link | None:
 
 
 def _together(w: Word, who: Names | None = None) -> Link | None:
-    if who is not None and who.denied:
+    if who is not None and (who.either or who.denied):
         return None
     return Link(words_of(w), how="same", names=who)
 
@@ -148,10 +125,6 @@ def _each_other(r: Word) -> Link | None:
 
 def _not_upon_each_other(w: Word) -> Link:
     return Link(words_of(w), UPON, how="not upon each other")
-
-
-def _upon_each_other(w: Word) -> Link:
-    return Link(words_of(w), UPON, how="upon each other")
 
 
 def _alone(w: Word) -> Link:
@@ -233,13 +206,6 @@ def _and(
     return (to, *rest)
 
 
-def _and_not_with(to: Link, who: Names) -> tuple[Link, ...] | None:
-    """ "together with blue, not with green"."""
-    if to.how != "same" or to.names is None or to.denied or who.either or who.denied:
-        return None
-    return (to, replace(to, names=who, denied=True))
-
-
 def _not_directly(to: Link) -> tuple[Link, ...] | None:
     if to.phrase is None or to.phrase.predicate.name != ABOVE or to.phrase.needs_place:
         return None
@@ -248,12 +214,6 @@ def _not_directly(to: Link) -> tuple[Link, ...] | None:
 
 def _or(to: Link, m: tuple[Link, ...]) -> tuple[Link, ...]:
     return (replace(to, how=to.how or "or"), *m)
-
-
-def _not_there(to: Link, p: Term) -> tuple[Link, ...] | None:
-    """ "in the left stack, not the right one"."""
-    there = to.names is not None and all(term.is_place for term in to.names.terms)
-    return (to,) if there and not to.denied and to.names != Names((p,)) else None
 
 
 def _neither(to: Link, m: Link) -> tuple[Link, ...]:

@@ -10,7 +10,6 @@ from scene_graph import LEFT, UP
 from ..terms import Term
 from .lattice import Word
 from .meaning import Row
-from .nominal import UPON
 
 
 def _in_order(b: Term, r: tuple[Term, ...] = (), c: Term | None = None) -> tuple[Term, ...]:
@@ -60,11 +59,6 @@ def _floor(o: str, b: Term) -> tuple[str, Term]:
     return o, b
 
 
-def _upon_named(b: Term, r: Word, c: Term) -> tuple[str, Term] | None:
-    """ "red on blue" behind "blue at the bottom"."""
-    return (f"upon {c.words.text}", b) if r.phrase == UPON and b != c else None
-
-
 def _levels(
     a: tuple[str, Term], r: tuple[tuple[str, Term], ...] = (), b: tuple[str, Term] | None = None
 ) -> tuple[tuple[str, Term], ...]:
@@ -88,25 +82,12 @@ def _leveled(
         upwards = first == (e[0] == "bottom")
         return row_of(UP, n if upwards else n[::-1], p)
     where = [how for how, _ in levels]
-    for number, how in enumerate(where):
-        if how.startswith("upon "):
-            # Of a tower that is told from below, each is on the one before.
-            if not number or where[0] != "bottom" or how[5:] != levels[number - 1][1].words.text:
-                return None
-            where[number] = "then"
-    if "start" in where:
-        h = h or "tower"
     if h is None and ("upon" in where or "first" in where):
         return None  # "red at the bottom, blue on it": of which tower?
     if "under" in where and where[0] != "top":
         return None
-    if h is not None and where[0] == "then" and set(where[1:]) <= {"upon", "over"}:
-        where[0] = "bottom"
-    same = {"upon": "then", "over": "then", "start": "bottom", "under": "then", "first": "bottom"}
+    same = {"upon": "then", "under": "then", "first": "bottom"}
     where = [same.get(how, how) for how in where]
-    behind = p is not None and p.words.offset > levels[0][1].words.offset
-    if behind and h is None and sorted(where) == ["bottom", "top"]:
-        return None  # "red on top, blue at the bottom of stack 1" leaves open what is between
     blocks = [block for _, block in levels]
     ordered = _ordered(where, blocks)
     if ordered is None:
@@ -133,11 +114,6 @@ def _sandwich(b: Term, c: Term, d: Term, e: tuple[str, Term]) -> Row | None:
     """ "red between blue and green, with blue on top"."""
     outer = (c, d) if e[1].words.text == c.words.text else (d, c)
     return _leveled(n=(outer[0], b, outer[1]), e=e, h="tower")
-
-
-def _between_ends(b: Term, c: Term, d: Term) -> Row | None:
-    """ "red between blue below and green above"."""
-    return row_of(UP, (c, b, d))
 
 
 def _ordered(where: list[str], blocks: list[Term]) -> tuple[Term, ...] | None:

@@ -146,13 +146,6 @@ def _told(b: Term) -> tuple[Item, ...]:
     return (Mention(b, told=True),)
 
 
-def _told_of_both(s: Names) -> tuple[Item, ...] | None:
-    """ "red and blue are friends, so they share a stack"."""
-    if any(term.kind is not Kind.THE or term.is_place for term in s.terms) or s.either:
-        return None
-    return tuple(Mention(term, told=True) for term in s.terms)
-
-
 #: An item, and how it is joined to what stands in front of it.
 Joined = tuple[str, tuple[Item, ...]]
 
@@ -177,20 +170,6 @@ def _more(i: tuple[Item, ...], r: tuple[Joined, ...], s: str = "") -> tuple[Join
         if not s or (first.bare and taken):
             return None
     return (("", i), (s or r[0][0], r[0][1]), *r[1:])
-
-
-def _once(i: tuple[Item, ...], s: str, r: tuple[Joined, ...]) -> tuple[Joined, ...] | None:
-    """ "once red is on blue, put green on red": what is on what was put there before."""
-    then = r[0][1][0] if len(r) == 1 and len(r[0][1]) == 1 else None
-    if len(i) != 1 or not isinstance(i[0], Relate) or not isinstance(then, Relate):
-        return None
-    subject, links = i[0].subject, then.links
-    if subject is None or len(subject.terms) != 1 or len(links) != 1 or links[0].names is None:
-        return None
-    first, onto = subject.terms[0], links[0].names.terms
-    same = len(onto) == 1 and (key_of(onto[0]) == key_of(first) or onto[0].words.text == "it")
-    up = links[0].phrase == UPON and not (then.denied or i[0].denied or i[0].links[0].denied)
-    return _more(i, r, s) if same and up and first.kind is Kind.THE else None
 
 
 def _replaced(i: tuple[Item, ...], c: str, r: tuple[Joined, ...]) -> tuple[Joined, ...] | None:
