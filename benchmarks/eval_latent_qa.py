@@ -117,8 +117,8 @@ def _of_seed(options: argparse.Namespace, seed: int, train: ClevrSet, test: Clev
         name = f"{setting}_{encoder.channels}_{options.answerer}_{seed}"
         return train_qa(options.runs / name, config, reader, start)
 
-    alone = options.once if seed != options.seeds[0] else ()
-    for channels in (size for size in options.channels if size not in alone):
+    enough = options.once if seed != options.seeds[0] else ()
+    for channels in [size for size in options.channels if size not in enough]:
         encoder = EncoderConfig(options.quantiser, channels, options.width)
         for setting in options.settings:
             # The reader cannot be asked of what shows nothing yet: the others go on from there.

@@ -41,7 +41,7 @@ class Shaking:
             return ""
         self._states += 1
         self._way += float(max(positions.furthest(last)))
-        self._got = max(self._got, *positions.furthest(first))
+        self._got = max(self._got, *map(float, positions.furthest(first)))
         self._last = positions
         if stamp - self._since >= _STRETCH_SECONDS and self._states >= _STRETCH_STATES:
             shaken = self._way > _TO_AND_FRO * self._got
