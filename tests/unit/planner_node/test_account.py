@@ -73,6 +73,17 @@ def test_fault_4_causes_come_in_order_the_first_one_first() -> None:
     assert "1 move was carried out" in outcome.message
 
 
+def lean_after_a_plan(bench: LoopBench) -> None:
+    """Once a plan was published no picture can be planned on."""
+
+    def lean() -> None:
+        if bench.plans:
+            bench.fault = {"status": GraphStatus.UNSTABLE, "message": "red_box leans"}
+        bench.live_on()
+
+    bench.clock.on_wait = lean
+
+
 @pytest.mark.parametrize(
     ("reason", "status"),
     [
@@ -87,13 +98,7 @@ def test_fault_4_the_reason_of_a_motion_is_not_dropped_when_the_look_after_it_fa
         yield from fail(reason, "the true reason")(bench, plan)
 
     bench = LoopBench(fail_and_hide)
-
-    def hide() -> None:
-        if bench.plans:
-            bench.fault = {"status": GraphStatus.UNSTABLE, "message": "red_box leans"}
-        bench.live_on()
-
-    bench.clock.on_wait = hide
+    lean_after_a_plan(bench)
     outcome = bench.achieve()
     assert outcome.status == status
     assert "the true reason" in outcome.message
@@ -103,13 +108,7 @@ def test_fault_4_the_reason_of_a_motion_is_not_dropped_when_the_look_after_it_fa
 
 def test_what_is_new_in_a_picture_that_is_refused_is_told() -> None:
     bench = LoopBench(knock((("red_box",), ("blue_box",), ("green_box", "pink_box"))))
-
-    def lean() -> None:
-        if bench.plans:
-            bench.fault = {"status": GraphStatus.UNSTABLE, "message": "red_box leans"}
-        bench.live_on()
-
-    bench.clock.on_wait = lean
+    lean_after_a_plan(bench)
     outcome = bench.achieve()
     assert outcome.status == Status.NOT_CONFIDENT
     assert "red_box leans; pink_box seems to be new" in outcome.message

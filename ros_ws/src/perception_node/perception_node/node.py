@@ -139,12 +139,12 @@ class PerceptionNode(Node):
         self._drawings = self.create_publisher(Image, "scene_graph/image", SENSOR_DATA)
         self._markers = self.create_publisher(MarkerArray, "scene_graph/markers", RELIABLE)
         # Pictures are interpreted as they come; what belongs to them is looked at in between.
-        self._frames = StreamThread(self, "frames")
+        self._pictures = StreamThread(self, "pictures")
         others = MutuallyExclusiveCallbackGroup()
         tolerance = round(1e9 * self._values["pairing_tolerance"])
         self._moments = Moments(self._values["cameras"], tolerance, time.perf_counter())
         self._cameras = {
-            name: CameraTopics(self._frames, name, self._values, self._on_frame)
+            name: CameraTopics(self._pictures, name, self._values, self._on_frame)
             for name in self._values["cameras"]
         }
         self._main = next(iter(self._cameras.values()))
@@ -166,7 +166,7 @@ class PerceptionNode(Node):
             callback_group=MutuallyExclusiveCallbackGroup(),
         )
         Presence(self, "perception_node")
-        self._frames.start()
+        self._pictures.start()
 
     # Callbacks
 
@@ -178,7 +178,7 @@ class PerceptionNode(Node):
 
     def _on_frames(self, message: Any) -> None:
         poses = [frame_pose_from_message(transform) for transform in message.transforms]
-        with self._frames.between:
+        with self._pictures.between:
             for camera in self._cameras.values():
                 camera.calibration.add_frames(poses)
 
@@ -193,13 +193,13 @@ class PerceptionNode(Node):
         if self._kept.finds and time.perf_counter() - self._main.last_image > SILENCE:
             response.message = f"no picture came within {SILENCE:g} s; check the camera"
         else:
-            with self._frames.between:
+            with self._pictures.between:
                 response.success, response.message = self._kept.find_anew()
         return response
 
     def _on_timer(self) -> None:
         """Says so when images arrive that never make a frame."""
-        with self._frames.between:
+        with self._pictures.between:
             self._say_what_is_missing(time.perf_counter())
 
     def _say_what_is_missing(self, now: float) -> None:
@@ -319,7 +319,7 @@ class PerceptionNode(Node):
 
     def destroy_node(self) -> None:
         """Writes the pictures that are kept and not written yet."""
-        self._frames.stop()
+        self._pictures.stop()
         if self._arm is not None:
             self._arm.stop()
         if self._recorder is not None:

@@ -2,7 +2,8 @@
 """Blocks that lie before the row of places, where nothing is planned on: they are named, too.
 
 A block that is pushed off a tower ends up there. It is in no relation and has no size, like one
-that lies among the places, see :mod:`.fallen`; only it is in nobody's way.
+that lies among the places, see :mod:`.fallen`; only it is in nobody's way. So are those that are
+seen besides a block of which a picture is refused.
 """
 
 from __future__ import annotations

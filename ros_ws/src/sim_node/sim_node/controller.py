@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .playback import Playback
-from .trajectory import JointLimits, Trajectory, TrajectoryError, check_jump
+from .trajectory import JointLimits, Trajectory, TrajectoryError, belated, check_jump
 from .world import World
 
 
@@ -98,7 +98,7 @@ class ArmController:
         if late > 0.0:
             if late > trajectory.duration:
                 raise TrajectoryError(f"it ended {late - trajectory.duration:.3g} s ago")
-            check_jump(playback.target(now)[0], state, tolerance, self.limits.names, late)
+            check_jump(playback.target(now)[0], state, tolerance, self.limits.names, belated(late))
         if begins > now:
             self._hold_still()
         self._playback = playback

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from .controller import FollowsTrajectories
 from .playback import Playback
 from .stock_rules import check_stock_rules
-from .trajectory import JointLimits, Trajectory, check_jump
+from .trajectory import JointLimits, Trajectory, belated, check_jump
 from .world import World
 
 Array = NDArray[np.float64]
@@ -84,7 +84,7 @@ class StockController:
         unheld = np.full(len(self.joints), np.inf)
         trajectory = Trajectory(names, times, positions, velocities, self._limits, state, unheld)
         playback = Playback(trajectory, now if begins is None else begins, world.timestep)
-        check_jump(playback.target(now)[0], state, self._tolerance, self.joints, max(0.0, -lead))
+        check_jump(playback.target(now)[0], state, self._tolerance, self.joints, belated(-lead))
         self._playback = playback
         return trajectory
 

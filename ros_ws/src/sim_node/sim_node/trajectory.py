@@ -68,7 +68,8 @@ class Trajectory:
             raise TrajectoryError("time_from_start does not grow from point to point")
         positions = positions[:, order]
         _check_positions(positions, limits)
-        _check_start(positions[0], start, start_tolerance, limits.names)
+        far = "the start is far from the present state: "
+        check_jump(positions[0], start, start_tolerance, limits.names, far)
         if times[0] > 0.0:
             times = np.concatenate([[0.0], times])
             positions = np.vstack([start, positions])
@@ -120,13 +121,13 @@ def check_jump(
     state: NDArray[np.float64],
     tolerance: NDArray[np.float64],
     names: Sequence[str],
-    late: float,
+    begin: str,
 ) -> None:
     """Whether joints can go over to a trajectory where they are; arrays have shape (n,) [rad, m].
 
     Args:
         target: where the trajectory has them now.
-        late: how long ago it was to start; not positive: it was not [s].
+        begin: of the sentence, where they cannot.
 
     Raises:
         TrajectoryError: if one of them would jump.
@@ -134,11 +135,15 @@ def check_jump(
     away = np.abs(target - state)
     if (away > tolerance).any():
         joint = int(np.argmax(away / tolerance))
-        when = f"it was to start {late:.3g} s ago, and " if late > 0.0 else ""
         raise TrajectoryError(
-            f"{when}{names[joint]} would jump by {away[joint]:.3f} (allowed: "
+            f"{begin}{names[joint]} would jump by {away[joint]:.3f} (allowed: "
             f"{tolerance[joint]:.3f})"
         )
+
+
+def belated(late: float) -> str:
+    """The begin of a sentence about a trajectory that was to start so long ago [s]; or nothing."""
+    return f"it was to start {late:.3g} s ago, and " if late > 0.0 else ""
 
 
 def _check_names(names: Sequence[str], expected: tuple[str, ...]) -> None:
@@ -158,21 +163,6 @@ def _check_positions(positions: NDArray[np.float64], limits: JointLimits) -> Non
         raise TrajectoryError(
             f"point {point} moves {limits.names[joint]} to {positions[point, joint]:.3f}, outside "
             f"{limits.lower[joint]:.3f} to {limits.upper[joint]:.3f}"
-        )
-
-
-def _check_start(
-    first: NDArray[np.float64],
-    start: NDArray[np.float64],
-    tolerance: NDArray[np.float64],
-    names: tuple[str, ...],
-) -> None:
-    distance = np.abs(first - start)
-    if (distance > tolerance).any():
-        joint = int(np.argmax(distance / tolerance))
-        raise TrajectoryError(
-            f"the start is far from the present state: {names[joint]} would jump by "
-            f"{distance[joint]:.3f} (allowed: {tolerance[joint]:.3f})"
         )
 
 

@@ -28,6 +28,8 @@ from numpy.typing import NDArray
 WRITTEN: Final = ("-O3", "-fopenmp-simd", "-fno-math-errno", "-fno-trapping-math")
 #: Of all code.
 FLAGS: Final = ("-fPIC", "-shared")
+#: Of what can be written to.
+_first_byte: Final[Callable[[Any], ctypes.c_char]] = ctypes.c_char.from_buffer
 #: A compiler that takes longer hangs [s].
 TIMEOUT: Final = 60.0
 
@@ -91,9 +93,6 @@ def address(array: NDArray[Any]) -> Any:
         pointer: Any = ctypes.c_void_p(array.ctypes.data)
         pointer.array = array
         return pointer
-
-
-_first_byte: Final[Callable[[Any], ctypes.c_char]] = ctypes.c_char.from_buffer
 
 
 def opened(library: Path | None) -> ctypes.CDLL | None:

@@ -123,7 +123,9 @@ class StreamThread:
                 for subscription, _ in new:
                     stack.enter_context(subscription.handle)
                     own: Any = subscription.event_handlers
-                    events += [stack.enter_context(event) or event for event in own]
+                    for event in own:
+                        stack.enter_context(event)
+                    events += own
                 heard += new
                 wait_set = _rclpy.WaitSet(len(heard), 1, 0, 0, 0, len(events), handle)
             wait_set.clear_entities()
