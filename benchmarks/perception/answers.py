@@ -115,12 +115,14 @@ def answer_of(drawn: Drawn, item: PictureSet, locator: Locator, world: World) ->
             others[camera.name] = other
     if item.damage is not None:
         rng = np.random.default_rng([drawn.seed, 13])
-        earlier = functools.partial(earlier_state, world, drawn)
+        earlier = functools.partial(earlier_state, world, drawn, item.as_high)
         observation = item.damage(observation, Shot(exact.labels, earlier, rng))
     problem = arm_problem(world, FIRST, observation, joints)
     answer, seen = answer_to(drawn.seed, observation, truth, item, locator, others)
-    if item.after and seen_frozen(earlier(), on_the_way(world, drawn), observation):
-        problem = FROZEN_COLORS
+    if item.after:
+        way = on_the_way(world, drawn, item.as_high)
+        if seen_frozen(earlier(), way, observation):
+            problem = FROZEN_COLORS
     if problem:
         status = GraphStatus.BAD_IMAGE.name
         answer = replace(answer, confident=False, status=status, message=problem, readings=0)

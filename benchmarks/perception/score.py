@@ -18,7 +18,7 @@ from perception.sets import PictureSet
 from perception_node.segment import RGB
 from scene_graph import UNKNOWN
 
-#: Every set is held to no more than this share of graphs that are accepted and wrong.
+#: Every set whose pictures settle it is held to no more than this share accepted and wrong.
 ACCEPTED_WRONG = 0.001
 
 
@@ -39,7 +39,7 @@ def rows_of(item: PictureSet, answers: Sequence[Answer]) -> list[Row]:
         Row(item.what, "accepted and right", accepted / n, "", n, wilson_interval(accepted, n),
             f">= {item.accepted}" if item.graph is not None else None),
         Row(item.what, "accepted and wrong", wrong / n, "", n, wilson_interval(wrong, n),
-            f"<= {ACCEPTED_WRONG}"),
+            f"<= {ACCEPTED_WRONG}" if item.settled else None),
         Row(item.what, "refused with a sentence",
             sum(not answer.confident and bool(answer.message) for answer in answers)
             / max(1, refused), "", refused, None, "== 1.0" if refused else None),

@@ -41,8 +41,6 @@ Range = tuple[float, float]
 #: Colours that no data set for training has.
 UNSEEN_COLORS: Final = tuple(color for color in COLORS if color not in BASIC_COLORS)
 HALF_HIDDEN: Final = "half of one block lost"
-#: Damages after which a picture may be as one of another state: only a moment before could tell.
-UNTOLD: Final = ("mirrored", "depth_frozen", "color_frozen")
 #: What is done with masks where depth is there as well.
 SNAPPED: Final = "masks are made those of what is found in colour and depth: little is left"
 #: What is looked through, where it is asked how much more two cameras see.
@@ -68,8 +66,8 @@ class PictureSet:
         sensor: what is wrong with the camera; its seed is the picture's.
         mask_source: of perception.
         graph: least share of right graphs; None: neither it nor ``accepted`` is required.
-        accepted: least share of graphs that are accepted and right; every set is also held to one
-            in a thousand accepted and wrong.
+        accepted: least share of graphs that are accepted and right; every set that is ``settled``
+            is also held to one in a thousand accepted and wrong.
         iou: least mean IoU.
         thesis: its numbers for graph and IoU.
         sizes: bounds on the 99th percentile of the errors of centre and size of the accepted [mm].
@@ -80,13 +78,16 @@ class PictureSet:
         shapes: least share of blocks with the right shape; None: not counted.
         baselines: whether the centroids of masks stand beside the visual module, or with masks from
             colour alone clusters of colours beside the network.
-        told: whether one picture can tell what is wrong with it.
+        told: whether colour and depth can tell what is wrong with the picture, without the arm.
+        settled: whether anything in the picture contradicts what is wrong; where nothing does,
+            nothing is required of it alone.
         note: what has to be known to read the rows.
         found: how many places are to be found, 0: as many as stacks; None: they are given.
         between: whether colours may be in doubt, and what is published of that is counted.
         cameras: how many are looked through, where it is asked how much more several see; else 0.
         after: whether it comes after a whole picture of the earlier state, and depth of the first
             move from there: what a camera whose colours froze sends.
+        as_high: whether the stacks of the earlier state are as high as those of now.
         poses: bounds on median and 99th percentile of the centre's error [mm], median of yaw's [°].
     """
 
@@ -107,10 +108,12 @@ class PictureSet:
     shapes: float | None = None
     baselines: bool = False
     told: bool = True
+    settled: bool = True
     between: bool = False
     found: int | None = None
     cameras: int = 0
     after: bool = False
+    as_high: bool = False
     note: str | None = None
 
 
@@ -145,13 +148,18 @@ def _of_masks_alone(kind: str, strength: int, damage: Damage = no_depth) -> Pict
 
 
 def _damaged(name: str, what: str, damage: Damage, mask_source: str = RGBD) -> PictureSet:
-    told = name not in UNTOLD
-    same = "a picture of another state of the table looks the same"
-    by_arm = name == "mirrored" and mask_source != RGB
+    told = name != "mirrored"
+    same = "a picture of another state of the table looks the same, but for the arm"
     return PictureSet(
         f"damage_{name}", what, plain(6), 200, mask_source=mask_source, damage=damage, told=told,
-        note=None if told else f"{same}, but for the arm" if by_arm else same,
+        note=None if told else same,
     )  # fmt: skip
+
+
+def _color_frozen(name: str, what: str, **more: Any) -> PictureSet:
+    """Colours of an earlier state that depth of now does not contradict, or not at once."""
+    damaged = _damaged("color_frozen", *OF_PICTURES["color_frozen"])
+    return replace(damaged, name=f"damage_color_{name}", what=what, **more)
 
 
 def _lit(
@@ -196,6 +204,7 @@ def _half_hidden_without_depth(seen: Observation, shot: Shot) -> Observation:
 
 
 _REAL: Final = SensorConfig(depth=REAL_DEPTH)
+_SEEN_BEFORE: Final = "a node has seen the whole picture before, and depth of the move"
 
 SETS: Final = (
     PictureSet(
@@ -308,9 +317,13 @@ SETS: Final = (
                colored(UNSEEN_COLORS, shapes=("box", "cylinder")), 500,
                mask_source=SEGMENTATION_TOPIC, damage=no_depth, shapes=0.99),
     *(_damaged(name, *entry) for name, entry in OF_PICTURES.items()),
-    replace(_damaged("color_frozen", *OF_PICTURES["color_frozen"]), name="damage_color_froze",
-            what="colours froze before the first move, depth not", after=True,
-            note="a node has seen the whole picture before, and depth of the move"),
+    _color_frozen("froze", "colours froze before the first move, depth not", after=True,
+                  note=_SEEN_BEFORE),
+    _color_frozen("as_high", "colours frozen, depth not, stacks as high as now", as_high=True,
+                  told=False, settled=False,
+                  note="depth of both states is the same: one picture cannot tell, see the next"),
+    _color_frozen("froze_as_high", "colours froze before the first move, stacks as high as now",
+                  as_high=True, after=True, told=False, note=_SEEN_BEFORE),
     *(_damaged(name, *entry, SEGMENTATION_TOPIC) for name, entry in OF_LABELS.items()),
     *(replace(_damaged(name, *OF_PICTURES[name], RGB), name=f"rgb_{name}",
               what=f"colour alone, {OF_PICTURES[name][0]}")

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import yaml
 from perception.answers import Answer
+from perception.earlier import earlier_state
 from perception.found_truth import on_found_places, place_errors
 from perception.readings import reading_rows, relations_of
 from perception.scenes import CLUTTER_GAP
@@ -89,6 +90,19 @@ def test_what_a_set_requires_stands_beside_its_rows() -> None:
         required = {row.metric: row.required for row in rows_of(item, [answer(True, True)])}
         assert (required["graph right"], required["accepted and right"]) == bounds
         assert required["accepted and wrong"] == "<= 0.001"
+
+
+@pytest.mark.parametrize("name", ["color_frozen", "color_as_high"])
+def test_frozen_colours_are_contradicted_by_depth_where_stacks_are_not_as_high(name: str) -> None:
+    (item,) = sets_named(f"damage_{name}")
+    bounds = {row.metric: row.required for row in rows_of(item, [answer(False, True)])}
+    assert (bounds["accepted and wrong"] is None) == item.as_high
+    drawn = item.draw(5)
+    with drawn.world() as world:
+        world.reset(drawn.layout, drawn.seed)
+        now, then = world.render(), earlier_state(world, drawn, item.as_high)
+    assert (now.rgb != then.rgb).any()
+    assert np.array_equal(now.depth, then.depth) == item.as_high
 
 
 def test_clutter_stands_clear_of_the_places() -> None:
