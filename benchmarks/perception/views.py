@@ -21,5 +21,5 @@ def view_of(camera: CameraConfig, frame: Frame) -> View:
         )
     calibration = Calibration()
     calibration.place(frame_pose_from_message(extrinsics_message(camera, Time())))
-    _, _, _, info, _ = camera_messages(frame, camera, Time())
+    info, *_ = camera_messages(frame, camera, Time())
     return calibration.view(lens_from_message(info), camera.width, camera.height)

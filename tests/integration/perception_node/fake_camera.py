@@ -25,13 +25,13 @@ TOWERS: Stacks = (("red_box", "blue_box"), ("green_box",), ("yellow_box", "purpl
 OTHER: Stacks = ((), ("green_box", "blue_box", "red_box"), ("purple_box", "yellow_box"))
 
 LABELS = "camera/segmentation"
-#: The images of a frame and their camera info, in the order in which the simulator makes them.
+#: The camera info of a frame and its images, in the order in which the simulator makes them.
 DEFAULT_CAMERA = CameraConfig()
 TOPICS = {
+    "camera/camera_info": CameraInfo,
     "camera/image_raw": Image,
     "camera/depth/image_raw": Image,
     LABELS: Image,
-    "camera/camera_info": CameraInfo,
 }
 #: What a camera publishes by itself.
 WITHOUT_LABELS = tuple(topic for topic in TOPICS if topic != LABELS)

@@ -119,7 +119,7 @@ def test_pictures_of_another_camera_than_the_calibrated_one_are_refused(
     camera.calibrate_and_show(frames[TOWERS])
     messages = camera.messages(frames[TOWERS])
     other = replace(CameraConfig(), name="wrist")
-    messages[INFO] = camera_messages(frames[TOWERS], other, camera.stamp)[3]
+    messages[INFO] = camera_messages(frames[TOWERS], other, camera.stamp)[0]
     message = camera.send(messages)
     assert message.status == SceneGraph.BAD_IMAGE
     assert "'camera_optical_frame'" in message.message

@@ -27,7 +27,7 @@ from sim_node import (
 from sim_node.camera_topics import CameraTopics
 
 CAMERA = CameraConfig(width=40, height=32)
-NAMES = ("image_raw", "depth/image_raw", "segmentation", "camera_info", "depth/camera_info")
+NAMES = ("camera_info", "image_raw", "depth/image_raw", "segmentation", "depth/camera_info")
 EXACT = SensorConfig()
 
 

@@ -20,12 +20,12 @@ from .sensor import Delivery, SensorConfig, is_lost, sense
 from .sensor.config import OFF
 from .sensor.sensor import DELIVERY, stage_random
 
-#: In the order of :func:`~sim_node.conversions.camera_messages`.
+#: In the order of :func:`~sim_node.conversions.camera_messages`: what is waited for comes first.
 _TOPICS: Final = (
+    ("camera_info", CameraInfo),
     ("image_raw", Image),
     ("depth/image_raw", Image),
     ("segmentation", Image),
-    ("camera_info", CameraInfo),
     ("depth/camera_info", CameraInfo),
 )
 _SEGMENTATION: Final = "segmentation"

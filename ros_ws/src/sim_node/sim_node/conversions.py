@@ -34,7 +34,7 @@ def optical_frame(config: CameraConfig) -> str:
 def camera_messages(
     frame: Frame, config: CameraConfig, stamp: Time, depth_encoding: str = METRES
 ) -> tuple:
-    """Colour, depth and segmentation image and the infos of colour and depth, with one header.
+    """Info, colour, depth and segmentation image, and the info of depth, with one header.
 
     Args:
         depth_encoding: METRES or MILLIMETRES.
@@ -53,10 +53,10 @@ def camera_messages(
     )
     depth = millimetres(frame.depth) if depth_encoding == MILLIMETRES else frame.depth
     return (
+        info,
         image_from_array(frame.rgb, "rgb8", header),
         image_from_array(depth, depth_encoding, header),
         image_from_array(frame.labels, "16UC1", header),
-        info,
         info,
     )
 
