@@ -41,6 +41,8 @@ class Claims:
         self._sides = False
         #: The last two that were said to be in one place.
         self._pair: list[Term] = []
+        #: The last two that were said to be beside each other.
+        self._neighbors: list[Term] = []
         #: Who stands at the bottom of a tower of which it is not yet said where it is.
         self._foot: Term | None = None
         self._footed: Term | None = None

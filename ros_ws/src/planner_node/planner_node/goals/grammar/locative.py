@@ -50,6 +50,15 @@ def _from_left(o: Word) -> Term | None:
     return term_of(words_of(o, text=f"stack {number - 1}")) if number > 0 else None
 
 
+def _ordinal(o: Word, n: Word) -> Term | None:
+    """ "the second stack", from the left; a tower may be one of those that are built."""
+    number = int(o.means)
+    if n.text in ("tower", "base", "corner", "shelf", "rack"):
+        return None
+    side = f"stack {-number - 1} from right" if number < 0 else f"stack {number - 1}"
+    return term_of(words_of(o, text=side))
+
+
 def _from_right(o: Word) -> Term | None:
     number = int(o.means)
     return term_of(words_of(o, text=f"stack {number - 1} from right")) if number > 0 else None

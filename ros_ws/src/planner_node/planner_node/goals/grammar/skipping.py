@@ -68,7 +68,18 @@ _CARE, _CARELESS, _CARE_DENIAL, _CARE_WORDS = map(
 _NEED_NOT, _NEED_NOT_CORE = map(_words_of, ("NEEDNOTWORD", "NEEDNOTCORE"))
 _WISH, _WISHES, _GOOD, _OPENS = map(_words_of, ("WISHWORD", "WISHCORE", "WISHGOOD", "WISHOPENS"))
 _STARTING: Final = _words_of("STARTING")
-_IN_REASONS: Final = _words_of("REASONED")
+_VERBS: Final = frozenset(
+    word
+    for kind in _words_of("VERBKIND")
+    for entry, _ in ENTRIES[kind]
+    for word in entry
+    if len(entry) == 1
+)
+#: What a word must not be like.
+_NEAR: Final = (_BOUND - _VERBS) | _NAMES
+_IN_REASONS: Final = _words_of("REASONED") | _VERBS
+_IN_STORIES: Final = _words_of("STORY") | _words_of("REASONED")
+_TELLERS: Final = frozenset({"the", "my", "our", "i", "we", "it", "he", "she", "they", "there"})
 
 
 @lru_cache(maxsize=4096)
@@ -81,7 +92,7 @@ def is_bound(word: str) -> bool:
     if "-" in word:
         return any(map(is_bound, word.split("-")))
     limit = 0 if len(word) < 4 else 1 if len(word) < 7 else 2
-    near = any(edits(word, name) <= limit for name in _BOUND if len(name) > 3)
+    near = any(edits(word, name) <= limit for name in _NEAR if len(name) > 3)
     return near or bool(mended(word, _NAMES))
 
 
@@ -94,7 +105,7 @@ def stretches(words: Sequence[str], start: int) -> Iterator[tuple[int, float]]:
     if apart:
         ends += [*_clause(words, start), *_cares(words, start), *_wishes(words, start)]
         if start == 0:
-            ends += _takes_back(words)
+            ends += [*_takes_back(words), *_story(words)]
     elif words[start] in _CARELESS or tuple(words[start : start + 2]) == ("no", "matter"):
         ends += _cares(words, start)
     for end in sorted(set(ends)):
@@ -108,33 +119,39 @@ def _end(words: Sequence[str], start: int) -> int:
 
 
 def _clause(words: Sequence[str], start: int) -> Iterator[int]:
-    """A clause of free words; one in front of all may lead to a wish: "…, so put red on blue"."""
+    """A clause of free words."""
     end = _end(words, start)
-    for at in range(start, end):
-        if start == 0 and at and words[at] == "so":
+    if not any(map(is_bound, words[start:end])):
+        yield from _with_sign(words, start, end)
+
+
+def _story(words: Sequence[str]) -> Iterator[int]:
+    """Why something is wished, in front of all: "it gets unloaded first, so red on blue"."""
+    for at, word in enumerate(words):
+        if at > 1 and word == "so" and words[0] in _TELLERS:
             yield at
-        if is_bound(words[at]):
+        if word in _SIGNS - {","} or (word not in _IN_STORIES and word != "," and is_bound(word)):
             return
-    yield from _with_sign(words, start, end)
 
 
 def _with_sign(words: Sequence[str], start: int, end: int) -> Iterator[int]:
-    """In front of all, the sign behind belongs to it."""
+    """The sign behind may belong to it."""
     yield end
-    if start == 0 and end < len(words):
+    if end < len(words) and (start == 0 or words[end] in ":-"):
         yield end + 1
 
 
 def _opened(words: Sequence[str], start: int) -> Iterator[int]:
     """A clause of purpose, time or reason, or a likeness, up to the next sign."""
-    for kind, more in (("OPENER", frozenset[str]()), ("REASON", _IN_REASONS)):
+    for kind, more in (("OPENER", _VERBS), ("REASON", _IN_REASONS)):
         for entry in SKIPPED[kind]:
             behind = start + len(entry)
             if tuple(words[start:behind]) != entry:
                 continue
             end = _end(words, behind)
+            allowed = more if entry != ("for",) else frozenset[str]()
             if end > behind and all(
-                word in more or not is_bound(word) for word in words[behind:end]
+                word in allowed or not is_bound(word) for word in words[behind:end]
             ):
                 yield from _with_sign(words, start, end)
 
