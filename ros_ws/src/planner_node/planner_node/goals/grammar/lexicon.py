@@ -54,9 +54,9 @@ COURTESY, COURTESY_DENIED, COURTLY = (
 SKIPPED: Final = {
     kind: tuple(words for words, _ in ENTRIES.pop(kind))
     for kind in (
-        "FREEKIND", "FREE", "BOUND", "OPENER", "REASON", "REASONED", "VERBKIND", "STORY", "CARECORE", "CARELESS",
-        "CAREDENIAL", "CAREWORD", "NEEDNOTWORD", "NEEDNOTCORE", "WISHWORD", "WISHCORE", "WISHGOOD",
-        "WISHOPENS", "STARTING",
+        "FREEKIND", "FREE", "BOUND", "OPENER", "REASON", "REASONED", "VERBKIND", "STORY",
+        "CARECORE", "CARELESS", "CAREDENIAL", "CAREWORD", "NEEDNOTWORD", "NEEDNOTCORE",
+        "WISHWORD", "WISHCORE", "WISHGOOD", "WISHOPENS", "STARTING", "UNSAID",
     )
 }  # fmt: skip
 #: Other ways to say a relation.

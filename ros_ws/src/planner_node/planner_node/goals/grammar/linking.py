@@ -240,4 +240,4 @@ class Linking(Anaphora):
             else:
                 self._nothing_on(term)
             self._name(term)
-        self.subjects, self.object = list(terms), None
+        self.subjects, self.object = list(terms), terms[-1] if terms[-1].is_place else None

@@ -67,6 +67,7 @@ _CARE, _CARELESS, _CARE_DENIAL, _CARE_WORDS = map(
 )
 _NEED_NOT, _NEED_NOT_CORE = map(_words_of, ("NEEDNOTWORD", "NEEDNOTCORE"))
 _WISH, _WISHES, _GOOD, _OPENS = map(_words_of, ("WISHWORD", "WISHCORE", "WISHGOOD", "WISHOPENS"))
+_UNSAID: Final = _words_of("UNSAID")
 _STARTING: Final = _words_of("STARTING")
 _VERBS: Final = frozenset(
     word
@@ -92,7 +93,10 @@ def is_bound(word: str) -> bool:
     if "-" in word:
         return any(map(is_bound, word.split("-")))
     limit = 0 if len(word) < 4 else 1 if len(word) < 7 else 2
-    near = any(edits(word, name) <= limit for name in _NEAR if len(name) > 3)
+    near = any(
+        edits(word, name) <= limit if len(name) > 3 else sorted(word) == sorted(name)
+        for name in _NEAR
+    )
     return near or bool(mended(word, _NAMES))
 
 
@@ -121,7 +125,8 @@ def _end(words: Sequence[str], start: int) -> int:
 def _clause(words: Sequence[str], start: int) -> Iterator[int]:
     """A clause of free words."""
     end = _end(words, start)
-    if not any(map(is_bound, words[start:end])):
+    said = [word for word in words[start:end] if start or word not in _UNSAID]
+    if said and not any(map(is_bound, said)):
         yield from _with_sign(words, start, end)
 
 
