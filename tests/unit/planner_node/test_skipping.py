@@ -39,7 +39,7 @@ BOUND = (
     "undo", "same", "either", "than", "already", "stack1", "all",
 )  # fmt: skip
 #: These are listed for stretches of one form, where they say nothing.
-LISTED = {"not", "never", "if", "stack", "all", "already"}
+LISTED = {"not", "if", "stack", "all", "already", "remove"}
 
 
 def read(text: str) -> str | None:
@@ -94,8 +94,11 @@ def test_what_changes_a_meaning_is_bound(word: str) -> None:
         "i do not care, green on top or not: red on blue",
         "red on blue, not necessarily touching",
         "red on blue. undo that",
-        "red on blue, blu like a crown",
-        "red on blue, psych",
+        "red on blue, green like a crown",
+        "red on blue, never mind",
+        "red on blue. do not bother",
+        "it is not so that red is on blue",
+        "it is unacceptable, red on blue",
         "red on blue before green is on yellow",
         "red on blue for two",
     ],
@@ -108,4 +111,4 @@ def test_a_long_text_is_refused_in_time() -> None:
     text = "the weather in the lab is nice, " * 5 + "red goes somewhere near blorp " * 3
     started = time.process_time()
     assert read(text) is None
-    assert time.process_time() - started < 5.0
+    assert time.process_time() - started < 2.0

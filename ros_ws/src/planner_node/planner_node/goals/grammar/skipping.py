@@ -37,6 +37,8 @@ _ASKING: Final = frozenset({
     "will", "shall", "should", "must",
 })  # fmt: skip
 _MODALS: Final = frozenset({"would", "should", "must", "will", "shall", "'d"})
+#: How words begin that deny others: "unacceptable".
+_DENYING: Final = ("un", "dis", "mis", "non", "anti", "counter", "contra")
 #: Names: what is like one of them is bound as well.
 _NAMES: Final = (
     frozenset(COLORS) | MORE_COLORS | frozenset(SHAPES) | NOUNS | PLACE_NOUNS
@@ -70,12 +72,8 @@ _WISH, _WISHES, _GOOD, _OPENS = map(_words_of, ("WISHWORD", "WISHCORE", "WISHGOO
 _UNSAID: Final = _words_of("UNSAID")
 _STARTING: Final = _words_of("STARTING")
 _VERBS: Final = frozenset(
-    word
-    for kind in _words_of("VERBKIND")
-    for entry, _ in ENTRIES[kind]
-    for word in entry
-    if len(entry) == 1
-)
+    entry[0] for kind in _words_of("VERBKIND") for entry, _ in ENTRIES[kind] if len(entry) == 1
+) - (_words_of("BOUND") | _NAMES)
 #: What a word must not be like.
 _NEAR: Final = (_BOUND - _VERBS) | _NAMES
 _IN_REASONS: Final = _words_of("REASONED") | _VERBS
@@ -90,6 +88,8 @@ def is_bound(word: str) -> bool:
         return True
     if word in _KNOWN:
         return False
+    if word.startswith(_DENYING):
+        return True
     if "-" in word:
         return any(map(is_bound, word.split("-")))
     limit = 0 if len(word) < 4 else 1 if len(word) < 7 else 2
@@ -169,7 +169,7 @@ def _cares(words: Sequence[str], start: int) -> Iterator[int]:
         denied = len([word for word in words[start:end] if word in _CARE_DENIAL]) == 1
         if (said & _CARE and denied) or (said & _CARELESS and not said & _CARE_DENIAL):
             yield from _with_sign(words, start, end)
-    upright = {"on", "onto", "atop", "upon", "top"} & set(words[:start])
+    upright = {"on", "onto", "atop", "upon", "top", "next", "beside"} & set(words[:start])
     if said <= _NEED_NOT and "not" in said and said & _NEED_NOT_CORE and not upright and start:
         yield end
 
@@ -186,7 +186,8 @@ def _wishes(words: Sequence[str], start: int) -> Iterator[int]:
         modal |= word in _MODALS
         if word not in _WISH | _WISHES | _GOOD:
             return
-        if (core or (good and modal)) and word in _OPENS and at > start + 1:
+        wished = (core or (good and modal)) and (word != "if" or words[at - 1] in _GOOD)
+        if wished and word in _OPENS and at > start + 1:
             yield at + 1
 
 
