@@ -96,6 +96,7 @@ def test_what_changes_a_meaning_is_bound(word: str) -> None:
         "red on blue. undo that",
         "red on blue, green like a crown",
         "red on blue, never mind",
+        "yellow, broken, on red",
         "red on blue. do not bother",
         "it is not so that red is on blue",
         "it is unacceptable, red on blue",

@@ -51,9 +51,9 @@ def _from_left(o: Word) -> Term | None:
 
 
 def _ordinal(o: Word, n: Word) -> Term | None:
-    """ "the second stack", from the left; not one of towers, nor what is "in the first place"."""
+    """ "the first stack", "the last"; the second may be the one that is called stack 2."""
     number = int(o.means)
-    if n.text not in ("stack", "pile", "column", "slot", "spot", "bay", "bin"):
+    if number > 1 or n.text not in ("stack", "pile", "column", "slot", "spot", "bay", "bin"):
         return None
     side = f"stack {-number - 1} from right" if number < 0 else f"stack {number - 1}"
     return term_of(words_of(o, text=side))

@@ -123,8 +123,10 @@ def _end(words: Sequence[str], start: int) -> int:
 
 
 def _clause(words: Sequence[str], start: int) -> Iterator[int]:
-    """A clause of free words."""
+    """A clause of free words, at an end of a sentence: "yellow, broken, on red" tells which."""
     end = _end(words, start)
+    if start and end < len(words) and words[end] != ".":
+        return
     said = [word for word in words[start:end] if start or word not in _UNSAID]
     if said and not any(map(is_bound, said)):
         yield from _with_sign(words, start, end)
