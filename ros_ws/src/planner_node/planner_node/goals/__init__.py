@@ -6,7 +6,8 @@ A text becomes a goal in four steps, each of which asks back what it does not un
 1. ``grammar.tokens`` and ``grammar.lattice`` find what kinds of word there are
    (``lexicon_of_*.txt``), with slips mended (``slips``);
 2. ``grammar.chart`` reads them in all ways that ``rules_of_*.txt`` allow, the cheapest first; the
-   modules that these name build what they mean;
+   modules that these name build what they mean; where a text is not read whole, it is read again
+   without the stretches of it that say nothing (``grammar.skipping``);
 3. ``grammar.discourse`` finds who "it" and "the rest" are: relations, as ``parsed.Parsed``;
 4. ``resolve`` finds what they mean in a scene, by ``names`` and by how the blocks stand ``now``, as
    ``goal.Goal``; ``contradictions`` finds what excludes itself.

@@ -47,6 +47,8 @@ class Anaphora(Claims):
             # On what already carries a block nothing else can be put.
             before, denied, _ = self.link
             found = subject if before == phrase and not denied else None
+        if subject is not None and subject.kind is Kind.NO:
+            found = self.object  # "nothing on red, it is to be clear"
         if found is None or found.kind is not Kind.THE:
             raise unclear(term)
         return found

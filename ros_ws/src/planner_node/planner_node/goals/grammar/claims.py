@@ -41,6 +41,8 @@ class Claims:
         self._sides = False
         #: The last two that were said to be in one place.
         self._pair: list[Term] = []
+        #: The last two that were said to be beside each other.
+        self._neighbors: list[Term] = []
         #: Who stands at the bottom of a tower of which it is not yet said where it is.
         self._foot: Term | None = None
         self._footed: Term | None = None
@@ -61,6 +63,8 @@ class Claims:
             object_ = replace(object_, kind=Kind.EVERY)  # "at most two blocks in any stack"
         if is_any_place(object_) and not (bounded or none):
             raise unclear(object_)
+        if object_.is_every_place and not denied and any(t.kind is Kind.THE for t in subjects):
+            raise unclear(object_)  # one block is not in every stack
         if denied and any(term.kind in (Kind.NO, Kind.COUNT) for term in subjects):
             raise unclear(subjects[0])
         if denied and len(subjects) == 1 and subjects[0].kind is Kind.EVERY:

@@ -22,6 +22,8 @@ def _bare(s: Names, to: tuple[Link, ...]) -> Relate | None:
     every = any(term.kind is Kind.EVERY for term in s.terms)
     if every and (to[0].denied or (aside and s.terms[0].words.text == "block")):
         return None  # "all blocks not in stack1": of whom something else is said?
+    if to[0].how == "clear" and any(term.bare for term in s.terms):
+        return None  # "nothing in stack 0, all empty"
     return relate(s, to, bare=True)
 
 

@@ -14,6 +14,7 @@ from ..hashing import hashed_once
 from ..slips import mended
 from .courtesy import courtesies
 from .lexicon import BAD, ENTRIES, FILLER, MORE_COLORS, RELATED
+from .skipping import is_bound, stretches
 from .tokens import Token
 
 #: What it costs to leave a word out, a comma beside such a word, to mend a word, and to take one
@@ -84,10 +85,15 @@ def _index(phrases: tuple[tuple[tuple[str, ...], Phrase], ...]) -> _Index:
     return index
 
 
-def lattice_of(tokens: Sequence[Token], literals: Collection[str]) -> Lattice:
+def lattice_of(
+    tokens: Sequence[Token], literals: Collection[str], skipping: bool = False
+) -> Lattice:
     """What begins at every word, behind a START in front of all.
 
     What follows and may be left out belongs to the word in front of it, or does not.
+
+    Args:
+        skipping: what says nothing of blocks may be left out, too.
     """
     index = _index(tuple(PREDICATES.phrases.items()))
     listed = [entry for found in index.values() for _, entry, _, _ in found]
@@ -116,6 +122,8 @@ def lattice_of(tokens: Sequence[Token], literals: Collection[str]) -> Lattice:
             word = Word(" ".join(entry), means, token.offset, tokens[end - 1].end, phrase)
             here.setdefault(kind, []).append((end, word, cost))
         skips += [(end, _LEFT_OUT) for end in courtesies(written, start)]
+        if skipping:
+            skips += stretches(written, start)
         if token.text.endswith("ly") and token.text not in known | BAD:
             skips.append((start + 1, _ADVERB))  # how it is done
         for kind, said, cost in _kinds(token.text, words[start], literals, alone):
@@ -135,6 +143,8 @@ def lattice_of(tokens: Sequence[Token], literals: Collection[str]) -> Lattice:
                 spoken.discard("RELATION")
             if spoken <= _CHAT and (len(token.text) > 1 or spoken - {"UNKNOWN", "REASONWORD"}):
                 here["CHATWORD"] = [(start + 1, itself, 0.0)]
+        if skipping and (token.text == "still" or not is_bound(token.text)):
+            here["FREEWORD"] = [(start + 1, itself, 0.0)]
         found.append(here)
         fillers.append(skips)
     return _with_fillers(found, fillers, written)

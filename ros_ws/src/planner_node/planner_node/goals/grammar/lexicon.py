@@ -50,5 +50,14 @@ COURTESY, COURTESY_DENIED, COURTLY = (
     frozenset(words[0] for words, _ in ENTRIES.pop(kind))
     for kind in ("COURTESY", "COURTESYNOT", "COURTLY")
 )
+#: What may be skipped, by kind; see ``skipping``.
+SKIPPED: Final = {
+    kind: tuple(words for words, _ in ENTRIES.pop(kind))
+    for kind in (
+        "FREEKIND", "FREE", "BOUND", "OPENER", "REASON", "REASONED", "VERBKIND", "STORY",
+        "CARECORE", "CARELESS", "CAREDENIAL", "CAREWORD", "NEEDNOTWORD", "NEEDNOTCORE",
+        "WISHWORD", "WISHCORE", "WISHGOOD", "WISHOPENS", "STARTING", "UNSAID",
+    )
+}  # fmt: skip
 #: Other ways to say a relation.
 RELATED: Final = tuple(ENTRIES.pop("RELATED"))

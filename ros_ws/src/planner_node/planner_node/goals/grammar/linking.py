@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from scene_graph import ABOVE, BESIDE, PREDICATES, Phrase
+from scene_graph import ABOVE, BESIDE, LEFT, PREDICATES, Phrase
 
 from ..objections import unclear
 from ..parsed import ParsedRelation, in_one_place, none_but
@@ -19,6 +19,11 @@ from .nominal import INSIDE, UPON
 _BESIDE = Phrase(PREDICATES[BESIDE])
 
 
+def _bounded(term: Term) -> bool:
+    """Whether it is "at most two blocks"."""
+    return term.kind is Kind.COUNT and not term.least and not term.bare
+
+
 class Linking(Anaphora):
     """Says relations of their subjects."""
 
@@ -29,6 +34,8 @@ class Linking(Anaphora):
         written = link.words
         if how == "clear":
             self._clear(subjects, denied)
+            return
+        if how == "side" and not carried and self._aside(subjects, link, denied):
             return
         if how == "side":
             if any(self._is_it(term) for term in (item.subject.terms if item.subject else ())):
@@ -45,6 +52,12 @@ class Linking(Anaphora):
             return
         if how in ("same", "different"):
             others = self._who(link.names) if link.names else []
+            first = subjects[0]
+            if how == "same" and not (others or subjects[1:] or denied) and _bounded(first):
+                every = Term(replace(written, text="stack"), Kind.EVERY)
+                self._add([first], INSIDE, False, written, every)
+                self.subjects, self.object = [first], None
+                return
             blocks = [*subjects, *others]
             if not others and len(blocks) == 1 and blocks[0].kind is Kind.THE and self.object:
                 blocks.append(self.object)  # "red under blue, in the same stack"
@@ -75,6 +88,7 @@ class Linking(Anaphora):
                 raise unclear(subjects[0])
             self._add(subjects[:1], _BESIDE, denied, written, subjects[1])
             self._name(*subjects)
+            self._neighbors = [] if denied else list(subjects)
             self.subjects, self.object = subjects, None
             return
         if how == "not upon each other":
@@ -118,6 +132,8 @@ class Linking(Anaphora):
                 if denied:
                     raise unclear_words(written)
                 self._add(subjects, _BESIDE, False, written, one)
+        if phrase == _BESIDE and not denied and len(subjects) == len(objects) == 1:
+            self._neighbors = [*subjects, *objects]
         if len(subjects) == 2 and phrase == INSIDE and not denied:
             self._pair = subjects
         if self._footed is not None and objects[-1].is_place and not denied:
@@ -125,6 +141,17 @@ class Linking(Anaphora):
             self._footed = None
         self.subjects, self.object = list(subjects), objects[-1]
         self.link = (phrase, denied, written)
+
+    def _aside(self, subjects: Sequence[Term], link: Link, denied: bool) -> bool:
+        """ "red and blue in neighbouring stacks, red on the left": left of blue."""
+        others = [one for one in self._neighbors if key_of(one) not in map(key_of, subjects)]
+        side = link.names.terms[0].words.side if link.names else None
+        if denied or len(subjects) != 1 or len(others) != 1 or side not in ("left", "right"):
+            return False
+        phrase = Phrase(PREDICATES[LEFT], inverse=side == "right")
+        self._add(subjects, phrase, False, link.words, others[0])
+        self.subjects, self.object = list(subjects), None
+        return True
 
     def _objects(
         self, link: Link, denied: bool, subjects: Sequence[Term], carried: bool
@@ -213,4 +240,4 @@ class Linking(Anaphora):
             else:
                 self._nothing_on(term)
             self._name(term)
-        self.subjects, self.object = list(terms), None
+        self.subjects, self.object = list(terms), terms[-1] if terms[-1].is_place else None

@@ -24,8 +24,13 @@ def _slipped(words: Words) -> bool:
     return words.stop - words.offset != len(words.text)
 
 
-def _pair(t: Term, u: Term) -> Names | None:
-    return _joined((t, u))
+def _pair(t: Term, u: Term, c: Word | None = None) -> Names | None:
+    return None if _announced(t, c) else _joined((t, u))
+
+
+def _announced(t: Term, c: Word | None) -> bool:
+    """ "two things: red …" are not one with another."""
+    return c is not None and c.text != "," and t.kind is not Kind.THE
 
 
 def _either_of(w: Word) -> Names:
@@ -41,7 +46,9 @@ def _either(t: Term, u: Term) -> Names:
     return Names((t, u), either=True)
 
 
-def _series(t: Term, r: Names) -> Names | None:
+def _series(t: Term, r: Names, c: Word | None = None) -> Names | None:
+    if _announced(t, c):
+        return None
     joined = _joined((t, *r.terms))
     return joined and replace(joined, either=r.either)
 

@@ -50,6 +50,15 @@ def _from_left(o: Word) -> Term | None:
     return term_of(words_of(o, text=f"stack {number - 1}")) if number > 0 else None
 
 
+def _ordinal(o: Word, n: Word) -> Term | None:
+    """ "the first stack", "the last"; the second may be the one that is called stack 2."""
+    number = int(o.means)
+    if number > 1 or n.text not in ("stack", "pile", "column", "slot", "spot", "bay", "bin"):
+        return None
+    side = f"stack {-number - 1} from right" if number < 0 else f"stack {number - 1}"
+    return term_of(words_of(o, text=side))
+
+
 def _from_right(o: Word) -> Term | None:
     number = int(o.means)
     return term_of(words_of(o, text=f"stack {number - 1} from right")) if number > 0 else None

@@ -26,21 +26,41 @@ _AS_GOOD: Final = 0.45
 _TOLERATED: Final = 0.9
 #: How many words and signs a goal may have.
 _LONGEST: Final = 200
+#: And one of which a part is skipped.
+_LONGEST_SKIPPED: Final = 80
 #: What it costs at least to read words that are not known.
 _STRANGE: Final = 2.0
+#: A reading of all the words, and what it costs.
+_Parse = tuple[float, tuple[Joined, ...]]
 
 
 def parse_goal(text: str) -> Parsed:
     """Reads a goal; of several readings all that are as good as the best.
+
+    Where it is not read whole, what says nothing of blocks is skipped.
 
     Raises:
         InvalidGoalError: there is none, or the best do not make sense.
     """
     tokens = tokens_of(text)
     parses = _parses(tokens)
+    readings, error = _readings(parses)
+    if not readings and len(tokens) <= _LONGEST_SKIPPED:
+        readings, _ = _readings(_parses(tokens, skipping=True))
+    if not readings and (error is None or parses[0][0] >= _STRANGE):
+        raise _not_understood(text, tokens, bool(parses))
+    if not readings:
+        assert error is not None
+        raise error
+    sensible = [said for said in readings if not any(map(_senseless, said))]
+    return Parsed(tuple(sensible or readings))
+
+
+def _readings(parses: Sequence[_Parse]) -> tuple[list[tuple[Said, ...]], PlannerError | None]:
+    """What the cheapest parses say that make sense; why the first that does not makes none."""
     best: float | None = None
     error: PlannerError | None = None
-    readings: dict[tuple[Said, ...], float] = {}
+    readings: dict[tuple[Said, ...], None] = {}
     for cost, joined in parses:
         limit = parses[0][0] + _TOLERATED if best is None else best + _AS_GOOD
         if cost > limit:
@@ -55,14 +75,8 @@ def parse_goal(text: str) -> Parsed:
             continue
         if said:
             best = cost if best is None else best
-            readings.setdefault(said, cost)
-    if not readings and (error is None or parses[0][0] >= _STRANGE):
-        raise _not_understood(text, tokens, bool(parses))
-    if not readings:
-        assert error is not None
-        raise error
-    sensible = [said for said in readings if not any(map(_senseless, said))]
-    return Parsed(tuple(sensible or readings))
+            readings[said] = None
+    return list(readings), error
 
 
 def _senseless(said: Said) -> bool:
@@ -72,11 +86,11 @@ def _senseless(said: Said) -> bool:
     return said.subject.words.text == said.object.words.text or said.subject.is_place
 
 
-def _parses(tokens: Sequence[Token]) -> list[tuple[float, tuple[Joined, ...]]]:
+def _parses(tokens: Sequence[Token], skipping: bool = False) -> list[_Parse]:
     """What the whole of some words may mean, the cheapest first."""
     if len(tokens) > _LONGEST:
         raise _too_long(tokens)
-    lattice = lattice_of(tokens, _LITERALS)
+    lattice = lattice_of(tokens, _LITERALS, skipping)
     try:
         found: list[Any] = GRAMMAR.parses("TEXT", lattice, max(_TOLERATED, _AS_GOOD))
     except (TooManyReadings, RecursionError):

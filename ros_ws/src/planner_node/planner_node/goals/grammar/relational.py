@@ -26,6 +26,9 @@ def _relation(w: Word, who: Names, d: Word | None = None) -> Link | None:
         return None
     if len({term.is_place for term in who.terms}) > 1:
         return None
+    if who.denied:  # "on neither red nor blue"
+        link = _relation(w, replace(who, denied=False, either=True), d)
+        return link and replace(link, denied=True)
     if not phrase.predicate.takes_place and any(term.is_place for term in who.terms):
         return None
     if d is not None and phrase.predicate.name == ABOVE:
@@ -50,6 +53,9 @@ def _misused(w: Word, who: Names) -> Link:
 def _in_place(w: Word, who: Names) -> Link | None:
     if not all(term.is_place for term in who.terms):
         return None
+    if who.denied:
+        who = replace(who, denied=False, either=True)
+        return replace(Link(words_of(w), INSIDE, who), denied=True)
     upon = w.text in ("on", "onto", "upon") or w.text.startswith(("on", "down on"))
     return Link(words_of(w), UPON if upon else INSIDE, who)
 
@@ -83,6 +89,11 @@ def _clear(w: Word) -> Link:
 
 def _there(w: Word) -> Link:
     return Link(words_of(w), how="there")
+
+
+def _off_there(w: Word) -> Link:
+    """ "out of that stack"."""
+    return Link(words_of(w), how="there", denied=True)
 
 
 def _at_top(w: Word, p: Term | None = None) -> Link | None:

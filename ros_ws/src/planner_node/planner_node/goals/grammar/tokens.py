@@ -48,7 +48,8 @@ _SHORT: Final = {
     "alot": "a lot", "infront": "in front", "upside-down": "upside down", "nr": "number",
     "der": "the", "die": "the", "das": "the", "upto": "up to", "pt": "put", "topof": "top of",
     "whats": "what is", "itll": "it will", "hes": "he is", "whos": "who is",
-    "nonempty": "not empty",
+    "nonempty": "not empty", "outta": "out of", "smth": "something", "sth": "something",
+    "btw": "by the way",
 }  # fmt: skip
 _TAILS: Final = {"d": "would", "ll": "will", "re": "are", "ve": "have", "m": "am", "s": "is"}
 #: Words that are written together with the one beside them: "redon blue", "putthe red".
@@ -83,6 +84,9 @@ def tokens_of(text: str) -> list[Token]:
             behind = call.end()
             continue
         if word := match["word"]:
+            if word.lower() == "comma":
+                found.append(Token(",", start, end))  # somebody dictates
+                continue
             words = _words(word.lower().replace("’", "'"))
             if len(words) > 1 and "".join(words) == word.lower():
                 at = start

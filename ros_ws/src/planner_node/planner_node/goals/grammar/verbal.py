@@ -39,8 +39,9 @@ def _verb(w: Sequence[tuple[str, Word]]) -> Verb | None:
             return None
     if ("not", "have") in {(kind, after.text) for (kind, _), (_, after) in pairwise(w)}:
         return None  # "should not have put"
+    floats = "all" in kinds[:1] or ("all" in kinds and w[0][1].text == "keep")
     may = "may" if "may" in kinds else "can" if "can" in kinds else ""
-    return Verb("not" in kinds, may, "past" in kinds, set(kinds) == {"all"})
+    return Verb("not" in kinds, may, "past" in kinds, floats)
 
 
 def asked(v: Verb | None, s: Names | None, wished: bool) -> bool:
