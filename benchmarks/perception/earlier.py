@@ -22,26 +22,26 @@ def seen_frozen(earlier: Frame, way: Frame, now: Observation) -> bool:
     return continuity.frozen_colors(2 * 10**8, now.rgb, now.depth) > 0.0
 
 
-def earlier_state(world: World, drawn: Drawn, as_high: bool = False) -> Frame:
+def earlier_state(world: World, drawn: Drawn, as_high: bool) -> Frame:
     """A picture of another state of the same blocks.
 
     Args:
         as_high: whether its stacks are as high as those of now, or some of them are not.
     """
-    world.reset(other_layout(drawn, as_high), drawn.seed)
+    world.reset(_other_layout(drawn, as_high), drawn.seed)
     return world.render()
 
 
-def on_the_way(world: World, drawn: Drawn, as_high: bool = False) -> Frame:
+def on_the_way(world: World, drawn: Drawn, as_high: bool) -> Frame:
     """A picture after the first move from there: the highest block of some stack on the next."""
-    stacks = [list(stack) for stack in other_layout(drawn, as_high)]
+    stacks = [list(stack) for stack in _other_layout(drawn, as_high)]
     source = max(range(len(stacks)), key=lambda place: len(stacks[place]))
     stacks[(source + 1) % len(stacks)].append(stacks[source].pop())
     world.reset(tuple(map(tuple, stacks)), drawn.seed)
     return world.render()
 
 
-def other_layout(drawn: Drawn, as_high: bool) -> Stacks:
+def _other_layout(drawn: Drawn, as_high: bool) -> Stacks:
     """The state of :func:`earlier_state`, for its arguments."""
     names = [name for stack in drawn.layout for name in stack]
     heights = [len(stack) for stack in drawn.layout]

@@ -143,6 +143,7 @@ def lattice_of(
                 spoken.discard("RELATION")
             if spoken <= _CHAT and (len(token.text) > 1 or spoken - {"UNKNOWN", "REASONWORD"}):
                 here["CHATWORD"] = [(start + 1, itself, 0.0)]
+        # "still" says nothing of a block that is told of: "red is still wet, so …".
         if skipping and (token.text == "still" or not is_bound(token.text)):
             here["FREEWORD"] = [(start + 1, itself, 0.0)]
         found.append(here)
