@@ -79,7 +79,7 @@ def test_relations_are_separated_and_repetitions_count_once(text: str) -> None:
         ("blue on green %", 14, "%"),
         ("blue in green", 8, "green"),
         ("stack1 in blue", 10, "blue"),
-        ("blue left of stack1", 13, "stack1"),
+        ("blue next to stack1", 13, "stack1"),
         ("stack1 right of blue", 0, "stack1"),
     ],
 )
@@ -98,7 +98,7 @@ def test_what_makes_no_sense_is_refused_with_its_position(
     [
         ("make a tower", "known are on, above, below, in, left of, right of"),
         ("blue in green", "'in' needs a place, such as stack0; use 'above' for a block"),
-        ("blue right of stack1", "'right of' relates two blocks; use 'on' or 'above' for a place"),
+        ("blue next to stack1", "'next to' relates two blocks; use 'on' or 'above' for a place"),
     ],
 )
 def test_a_refusal_says_what_would_be_understood(text: str, sentence: str) -> None:

@@ -24,6 +24,9 @@ BEFORE = (
     "because the lab is cold ,",
     "my daughter is watching so",
     "before you leave :",
+    "by lunch ,",
+    "when the inspector comes ,",
+    "acceptance criterion :",
 )
 BEHIND = (
     ". go go",
@@ -33,12 +36,16 @@ BEHIND = (
     "so my daughter can see it",
     "by the time i 'm back",
     "for the photo",
+    ", the baby crawls over there",
+    ", otherwise the forklift can not reach it",
+    ", i find it prettier that way",
+    "because the red one is fragile",
 )
 #: What may change the meaning of what it is put to.
 BOUND = (
     "not", "never", "without", "only", "two", "three", "or", "except", "unless", "if", "instead",
     "green", "gren", "blu", "cube", "stack", "left", "above", "swap", "reverse", "remove",
-    "undo", "same", "either", "than", "already", "stack1", "all",
+    "undo", "same", "either", "than", "already", "stack1", "all", "r",
 )  # fmt: skip
 #: These are listed for stretches of one form, where they say nothing.
 LISTED = {"not", "if", "stack", "all", "already", "remove"}

@@ -77,7 +77,6 @@ def test_it_means_the_same_as_plain_relations(text: str, plain: str) -> None:
         "red on blue, no",
         "red on blue if green is clear",
         "anything but red on blue",
-        "no block in the first two stacks",
         "all six blocks in stack1",
         "Red on blue. All in stack1.",
         "red block blue on green cyan on",

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from scene_graph import PREDICATES, Phrase
+from scene_graph import LEFT, PREDICATES, Phrase
 
 from ..errors import InvalidGoalError
 from .example import EXAMPLE
-from .terms import Term
+from .terms import Kind, Term
 
 
 def check_places(subject: Term, phrase: Phrase, object_: Term, written: str) -> None:
@@ -20,7 +20,8 @@ def check_places(subject: Term, phrase: Phrase, object_: Term, written: str) -> 
             object_.words.text,
         )
     if not phrase.predicate.takes_place:
-        for term in (subject, object_):
+        beside_place = phrase.predicate.name == LEFT and object_.kind is Kind.THE
+        for term in (subject,) if beside_place else (subject, object_):
             if term.is_place:
                 fitting = [
                     f"'{PREDICATES[name].words}'"

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 from scene_graph import (
     ABOVE,
+    LEFT,
     ONE_ROW,
     PREDICATES,
     UP,
@@ -19,6 +20,7 @@ from scene_graph import (
     Relation,
     Rows,
     Stacks,
+    base_index,
     base_name,
 )
 
@@ -97,6 +99,8 @@ def _resolve(said: Sequence[Said], scene: _Scene) -> Goal:
         check_sides((item.subject, item.object), scene.rows)
         subjects = _resolve_term(item.subject, scene)
         objects = _resolve_term(item.object, scene)
+        if item.object.is_place and item.phrase.predicate.name == LEFT:
+            item, objects = _aside(item, objects[0], scene)
         for meaning in _meanings(item, subjects, objects):
             if isinstance(meaning, Count):
                 counts[meaning] = None
@@ -108,6 +112,25 @@ def _resolve(said: Sequence[Said], scene: _Scene) -> Goal:
             now = scene.known(item.words)
             relations |= dict.fromkeys(now.changed(item, moved))
     return Goal(tuple(relations), tuple(counts), scene.rows)
+
+
+def _aside(
+    item: ParsedRelation, place: str, scene: _Scene
+) -> tuple[ParsedRelation, tuple[str, ...]]:
+    """ "left of stack2": in one of the places there."""
+    words, index = item.object.words, base_index(place)
+    assert index is not None
+    if scene.stack_count is None or scene.rows.count > 1:
+        raise InvalidGoalError(
+            f"it is not known which places are beside {place}; name them", words.offset, words.text
+        )
+    beside = range(index + 1, scene.stack_count) if item.phrase.inverse else range(index)
+    if not beside:
+        side = "right" if item.phrase.inverse else "left"
+        raise InvalidGoalError(f"there is no place {side} of {place}", words.offset, words.text)
+    some = replace(item.object, kind=Kind.COUNT)
+    inside = Phrase(PREDICATES[ABOVE], needs_place=True)
+    return replace(item, phrase=inside, object=some), tuple(map(base_name, beside))
 
 
 def _resolve_term(term: Term, scene: _Scene) -> tuple[str, ...]:

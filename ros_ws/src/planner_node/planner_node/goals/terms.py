@@ -100,6 +100,7 @@ class Term:
         exact: of EVERY, how many there have to be; None: it is not said.
         less: of COUNT, how many fewer than all there have to be; 0: it is not said so.
         bare: it is a number or "all" without a name: "two boxes in stack0, one in stack1".
+        partitive: of COUNT, they are some of those that the name fits: "two of the boxes".
         described: it is known by how the blocks stand now.
     """
 
@@ -114,6 +115,7 @@ class Term:
     exact: int | None = None
     less: int = 0
     bare: bool = False
+    partitive: bool = False
     described: Described | None = None
 
     @property

@@ -79,6 +79,8 @@ class Claims:
         if only := [subject for subject in subjects if subject.only]:
             self._only(subjects, phrase, denied, object_, only[0])
             subjects = [replace(subject, only=False) for subject in subjects]
+        if phrase == UPON and object_.is_place and not denied:
+            subjects = self._lowest(subjects)
         for subject in subjects:
             subject = self._among_others(subject, phrase, object_)
             if subject.kind in (Kind.EVERY, Kind.COUNT) and not subject.others:
@@ -94,6 +96,21 @@ class Claims:
                 # Several blocks on a place cannot all stand directly on it.
                 meaning = phrase._replace(predicate=PREDICATES[ABOVE])
             self.relations.append(ParsedRelation(subject, meaning, object_, denied))
+
+    def _lowest(self, subjects: Sequence[Term]) -> Sequence[Term]:
+        """Of blocks that were said to stand on one another the lowest, else all of them.
+
+        "red on blue, and both on the floor at stack 1"
+        """
+        upon = {
+            key_of(said.subject): key_of(said.object)
+            for said in self.relations
+            if isinstance(said, ParsedRelation) and said.phrase == UPON and not said.negated
+        }
+        keys = [key_of(term) for term in subjects]
+        lowest = [term for term in subjects if upon.get(key_of(term)) not in keys]
+        named = all(term.kind is Kind.THE for term in subjects)
+        return lowest if named and len(lowest) == 1 and len(subjects) > 1 else subjects
 
     def _among_others(self, subject: Term, phrase: Phrase, object_: Term) -> Term:
         """ "the rest" as all but those that were named."""
@@ -131,6 +148,8 @@ class Claims:
             ]
             return replace(subject, others=False, but=tuple(on_it))
         spoken = [*self._named.values(), *self._kinds]
+        if not spoken and object_.kind is Kind.THE and not object_.is_place:
+            spoken = [object_]  # "all the other blocks left of yellow"
         if not spoken or any(term.kind is Kind.COUNT for term in spoken):
             raise unclear(subject)
         if subject.kind is Kind.NO and set(self._named) != set(map(key_of, self.subjects)):

@@ -8,7 +8,7 @@ from dataclasses import replace
 from ..terms import Kind, Term, Words
 from .lattice import Word
 from .meaning import Link, Names, Relate
-from .nominal import INSIDE, UPON, term_of, words_of
+from .nominal import INSIDE, UPON, of_these, term_of, words_of
 from .verbal import Verb, asked, before, only_of, relate
 
 
@@ -50,11 +50,13 @@ def _share(
     return relate(s, (link,), v) if asked(v, s, wished) else None
 
 
-def _among_them(s: Names, v: Verb | None = None, wished: bool = False) -> Relate | None:
+def _among_them(
+    s: Names, v: Verb | None = None, n: Word | None = None, wished: bool = False
+) -> Relate | None:
     """ "three blocks in stack1, red among them"."""
     if (v and v.denied) or not asked(v, s, wished) or any(term.is_place for term in s.terms):
         return None
-    return Relate(s, (Link(s.terms[0].words, how="there"),))
+    return Relate(s, (Link(s.terms[0].words, how="there"),), denied=n is not None)
 
 
 def _neither_of_them(s: Names, to: tuple[Link, ...], v: Verb | None = None) -> Relate | None:
@@ -62,6 +64,20 @@ def _neither_of_them(s: Names, to: tuple[Link, ...], v: Verb | None = None) -> R
     if len(s.terms) < 2 or s.either or s.denied or (v and (v.denied or v.past)):
         return None
     return Relate(replace(s, denied=True), to)
+
+
+def _some_of_them(
+    s: Names, q: tuple[int, int | None], to: tuple[Link, ...], v: Verb | None = None
+) -> Relate | None:
+    """ "red, blue and green: at least one of them in stack 0"."""
+    term = of_these(q, s)
+    return relate(Names((term,)), to, v) if term and asked(v, Names((term,)), False) else None
+
+
+def _nor(s: Names, to: tuple[Link, ...]) -> Relate | None:
+    """ "nor shall any other block be above it"."""
+    plain = all(term.kind in (Kind.THE, Kind.COUNT) for term in s.terms)
+    return relate(s, to, Verb(denied=True)) if plain and len(s.terms) == 1 else None
 
 
 def _different_for(s: Names) -> Relate:

@@ -14,7 +14,7 @@ from ..hashing import hashed_once
 from ..slips import mended
 from .courtesy import courtesies
 from .lexicon import BAD, ENTRIES, FILLER, MORE_COLORS, RELATED
-from .skipping import is_bound, stretches
+from .skipping import EVERYDAY, is_bound, stretches
 from .tokens import Token
 
 #: What it costs to leave a word out, a comma beside such a word, to mend a word, and to take one
@@ -146,6 +146,8 @@ def lattice_of(
         # "still" says nothing of a block that is told of: "red is still wet, so …".
         if skipping and (token.text == "still" or not is_bound(token.text)):
             here["FREEWORD"] = [(start + 1, itself, 0.0)]
+        if skipping and token.text in EVERYDAY:
+            here["EVERYDAYWORD"] = [(start + 1, itself, 0.0)]
         found.append(here)
         fillers.append(skips)
     return _with_fillers(found, fillers, written)

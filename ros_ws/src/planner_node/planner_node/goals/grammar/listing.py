@@ -4,11 +4,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Final
 
+from scene_graph import COLORS, SHAPES
+
+from ..language import NOUNS
 from ..terms import Kind, Term, Words
 from .lattice import Word
+from .lexicon import MORE_COLORS
 from .meaning import Names
 from .nominal import term_of, words_of
+
+#: What names are made of.
+_NAMING: Final = frozenset(COLORS) | MORE_COLORS | frozenset(SHAPES) | NOUNS | {"one"}
 
 
 def _one(t: Term) -> Names:
@@ -31,6 +39,17 @@ def _pair(t: Term, u: Term, c: Word | None = None) -> Names | None:
 def _announced(t: Term, c: Word | None) -> bool:
     """ "two things: red …" are not one with another."""
     return c is not None and c.text != "," and t.kind is not Kind.THE
+
+
+def _contrast(t: Term, u: Term) -> Names | None:
+    """ "blue, not green", but not "blue, not quite", which is no name."""
+    named = all(word in _NAMING or "_" in word for word in u.words.text.split())
+    return _one(t) if named else None
+
+
+def _only_it(t: Term, u: Term) -> Names | None:
+    """ "yellow, and only yellow"."""
+    return _one(replace(t, only=True)) if t.words.text == u.words.text else None
 
 
 def _either_of(w: Word) -> Names:
@@ -91,6 +110,19 @@ def _range(p: Term | Word, q: Term | Word) -> Names | None:
     return Names(tuple(term_of(replace(words, text=f"stack {number}")) for number in numbers))
 
 
+def _ends(o: Word, k: Word) -> Names | None:
+    """ "the last two stacks"."""
+    if o.means not in ("1", "-1"):
+        return None
+    from_right = " from right" if o.means == "-1" else ""
+    return Names(
+        tuple(
+            term_of(words_of(o, text=f"stack {number}{from_right}"))
+            for number in range(int(k.means))
+        )
+    )
+
+
 def _sides(i: Word, j: Word) -> Names:
     return Names(tuple(term_of(words_of(k, text=f"{k.means} stack")) for k in (i, j)))
 
@@ -104,13 +136,26 @@ def _apposed(who: Names) -> Names | None:
     return who if all(one.kind is Kind.THE and not one.is_place for one in who.terms) else None
 
 
+def _named(who: Names) -> Names | None:
+    """Some that are named one by one: "red, blue and green"."""
+    return who if all(one.kind is Kind.THE for one in who.terms) and not who.denied else None
+
+
+def _none_of(who: Names) -> Names | None:
+    """ "none of the blocks red, yellow and green"."""
+    named = _named(who)
+    return named and replace(named, denied=True, either=False)
+
+
 def _correction(w: Word) -> str:
     return w.text
 
 
 def _joined(terms: tuple[Term, ...]) -> Names | None:
-    if any(term.bare and term.kind is Kind.EVERY for term in terms[1:]):
-        return None
+    if any(term.bare for term in terms[1:]) or (terms[0].bare and terms[0].kind is Kind.COUNT):
+        return None  # "red, blue and green: at least one of them"
+    if terms[0].partitive and any(term.kind is Kind.THE for term in terms):
+        return None  # "one of the red, the blue and the green"
     if any(term.but or term.among for term in terms[:-1]):
         return None  # "all but red and blue"
     if any(term.kind is Kind.NO and not term.others for term in terms):

@@ -45,6 +45,11 @@ def _at_side(s: Word) -> Term | None:
     return term_of(words_of(s, text=f"{s.means} stack"))
 
 
+def _ordinal_alone(o: Word) -> Term | None:
+    """ "in the first"."""
+    return _ordinal(o, replace(o, text="stack"))
+
+
 def _from_left(o: Word) -> Term | None:
     number = int(o.means)
     return term_of(words_of(o, text=f"stack {number - 1}")) if number > 0 else None

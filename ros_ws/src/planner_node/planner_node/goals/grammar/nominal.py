@@ -49,9 +49,19 @@ def _colored(a: Word, h: tuple[Word, bool]) -> tuple[Words, bool]:
     return words_of(*sorted((a, h[0]), key=lambda word: word.offset)), h[1]
 
 
+def _color_behind(a: Word, h: tuple[Word, bool]) -> tuple[Words, bool] | None:
+    """ "block red", but not "the blocks red, …", which are told one by one."""
+    return None if h[1] else _colored(a, h)
+
+
 def _shaped(s: Word, a: Word | None = None) -> tuple[Words, bool]:
     """ "the spherical one"."""
     return words_of(a, s), False
+
+
+def _can(w: Word, a: Word | None = None) -> tuple[Words, bool]:
+    """ "the can", a cylinder."""
+    return words_of(a, replace(w, means="cylinder")), False
 
 
 def _doubly(a: Word, b: Word, h: Word) -> tuple[Words, bool]:
@@ -143,7 +153,17 @@ def _both(n: tuple[Words, bool]) -> Term | None:
 
 
 def _everything(w: Word) -> Term:
-    bare = w.text in ("all", "them all", "all of them", "all of it", "it all")
+    bare = w.text in (
+        "the lot",
+        "the whole lot",
+        "the whole set",
+        "the whole bunch",
+        "all",
+        "them all",
+        "all of them",
+        "all of it",
+        "it all",
+    )
     return term_of(words_of(w, text="block"), Kind.EVERY, bare=bare)
 
 
@@ -167,6 +187,11 @@ def _number(q: tuple[int, int | None], n: tuple[Words, bool]) -> Term:
     return term_of(n[0], Kind.COUNT, least=q[0], most=q[1])
 
 
+def _number_of(q: tuple[int, int | None], n: tuple[Words, bool]) -> Term:
+    """ "two of the boxes"."""
+    return replace(_number(q, n), partitive=True)
+
+
 def _not_one(q: tuple[int, int | None]) -> tuple[int, int | None] | None:
     return None if q == (1, 1) else q  # one at least, or one only?
 
@@ -183,12 +208,16 @@ def _bare_one(w: Word) -> Term | None:
     return term_of(words_of(w, text="block"), Kind.COUNT, least=1, most=1, bare=True)
 
 
-def _of_these(q: tuple[int, int | None], who: Names) -> Term | None:
-    if any(one.kind is not Kind.THE for one in who.terms) or q[0] > len(who.terms):
+def of_these(q: tuple[int, int | None], who: Names) -> Term | None:
+    """ "two of red, blue and green"; None: there are not so many."""
+    if q[0] > len(who.terms) or q[1] == 0:
         return None
     first = who.terms[0].words
     among = tuple(one.words for one in who.terms)
     return term_of(first, Kind.COUNT, least=q[0], most=q[1], among=among)
+
+
+_of_these: Final = of_these
 
 
 def _all_but(t: Term, who: Names) -> Term | None:
@@ -228,6 +257,11 @@ def _noun_of_others(n: Word) -> Word | None:
 def _other_ones(o: Word, n: Word) -> Term:
     text = n.means if n.text not in ("ones", "one") else "block"
     return term_of(words_of(o, text=text), Kind.EVERY, others=True)
+
+
+def _number_of_others(q: tuple[int, int | None], n: Word) -> Term:
+    """ "two of the other boxes"."""
+    return replace(_number(q, (_other_ones(n, n).words, True)), others=True)
 
 
 def _other_two(o: Word, k: Word) -> Term:

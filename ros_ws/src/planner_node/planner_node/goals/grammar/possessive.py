@@ -43,12 +43,14 @@ def _has_on_it(
 
 
 def _has_at_end(
-    s: Names, o: Names, t: Word, v: Verb | None = None, wished: bool = False
-) -> Relate | None:
+    s: Names, o: Names, top: Word | None = None, bottom: Word | None = None,
+    v: Verb | None = None, wished: bool = False,
+) -> Relate | None:  # fmt: skip
     if not all(is_place(term) for term in s.terms) or len(s.terms) > 1 or (v and v.denied):
         return None
-    how = "bottom" if "b" in t.text.split()[-1] else "top"
-    return Relate(o, (Link(words_of(t), how=how, names=s),)) if asked(v, s, wished) else None
+    how = "bottom" if bottom else "top"
+    edge = Link(words_of(top, bottom), how=how, names=s)
+    return Relate(o, (edge,)) if asked(v, s, wished) else None
 
 
 def _covered(s: Names, o: Names, v: Verb | None = None, wished: bool = False) -> Relate | None:

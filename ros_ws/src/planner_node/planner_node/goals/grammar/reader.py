@@ -45,8 +45,11 @@ def parse_goal(text: str) -> Parsed:
     tokens = tokens_of(text)
     parses = _parses(tokens)
     readings, error = _readings(parses)
-    if not readings and len(tokens) <= _LONGEST_SKIPPED:
-        readings, _ = _readings(_parses(tokens, skipping=True))
+    strange = parses[0][0] >= _STRANGE if readings else True
+    if strange and len(tokens) <= _LONGEST_SKIPPED:
+        skipped = _parses(tokens, skipping=True)
+        if not readings or skipped[0][0] < parses[0][0]:
+            readings = _readings(skipped)[0] or readings
     if not readings and (error is None or parses[0][0] >= _STRANGE):
         raise _not_understood(text, tokens, bool(parses))
     if not readings:

@@ -29,7 +29,8 @@ def _relation(w: Word, who: Names, d: Word | None = None) -> Link | None:
     if who.denied:  # "on neither red nor blue"
         link = _relation(w, replace(who, denied=False, either=True), d)
         return link and replace(link, denied=True)
-    if not phrase.predicate.takes_place and any(term.is_place for term in who.terms):
+    places_too = phrase.predicate.takes_place or (phrase.predicate.name == LEFT and d is None)
+    if not places_too and any(term.is_place for term in who.terms):
         return None
     if d is not None and phrase.predicate.name == ABOVE:
         if phrase.needs_place:
@@ -170,6 +171,13 @@ def _closely(to: Link) -> tuple[Link, ...] | None:
     if to.phrase is None or to.denied or to.phrase.needs_place or to.phrase.predicate.name != ABOVE:
         return None
     return (replace(to, phrase=UPON._replace(inverse=to.phrase.inverse)),)
+
+
+def _next_door(to: Link) -> tuple[Link, ...] | None:
+    """ "left of blue, in the very next stack"."""
+    if to.phrase is None or to.denied or to.how or to.phrase.predicate.name not in _SIDEWAYS:
+        return None
+    return (replace(to, adjacent=True),)
 
 
 def _higher(w: Word, who: Names) -> Link:

@@ -38,6 +38,28 @@ def _under(c: Item, f: bool = False) -> Item | None:
     return relate(subject, item.links, Verb(denied=True))
 
 
+def _tower_of(c: Item) -> Item | None:
+    """ "a tower with red on blue", but not "a tower of red and blue": which of them on which?"""
+    return None if _of_several(c) else c
+
+
+def _of_several(item: Item) -> bool:
+    return isinstance(item, Relate) and item.subject is not None and len(item.subject.terms) > 1
+
+
+def _may(c: Item) -> Item | None:
+    """ "can red be on blue?", a wish; but not "can stack 1 hold three blocks?", a question."""
+    if not isinstance(c, Relate) or c.subject is None:
+        return c
+    place, block = c.links[0].names, c.subject.terms[0].words
+    told_first = (
+        place is not None
+        and place.terms[0].is_place
+        and (not block.stop or place.terms[0].words.stop <= block.offset)
+    )
+    return None if told_first else c
+
+
 # What says nothing
 
 
@@ -170,6 +192,11 @@ def _more(i: tuple[Item, ...], r: tuple[Joined, ...], s: str = "") -> tuple[Join
         if not s or (first.bare and taken):
             return None
     return (("", i), (s or r[0][0], r[0][1]), *r[1:])
+
+
+def _built(s: str, r: tuple[Joined, ...]) -> tuple[Joined, ...] | None:
+    """ "let us build a tower: red on blue", but not "with red and blue": which on which?"""
+    return None if s == "with" and any(map(_of_several, r[0][1])) else r
 
 
 def _replaced(i: tuple[Item, ...], c: str, r: tuple[Joined, ...]) -> tuple[Joined, ...] | None:

@@ -9,9 +9,12 @@ is made of words nobody knows and of ``FREE`` ones, and it is
 * a clause of its own, between signs or at an end: "go go", "the kids are watching";
 * a clause of purpose, time or reason, or a likeness, behind an ``OPENER``: "like a crown";
 * a wish that holds a clause: "the goal is a configuration in which …" (``WISHWORD``);
-* what nobody cares for: "order doesn't matter" (``CAREWORD``), "not necessarily touching".
+* what nobody cares for: "order doesn't matter" (``CAREWORD``), "not necessarily touching";
+* a remark behind a goal or in front, in words of every day: ", the baby crawls over there"
+  (``REMARK``, ``EVERYDAY``);
+* a time in front: "by lunch …" (``FRONT``), and a heading: "acceptance criterion: …" (``LABEL``).
 
-The last two have bound words, too, so they have no others than those that are listed.
+The last four may have bound words, too, so they have no others than those that are listed.
 """
 
 from __future__ import annotations
@@ -61,7 +64,9 @@ def _bound() -> frozenset[str]:
 
 _BOUND: Final = _bound()
 _FREE: Final = _words_of("FREE") - _words_of("BOUND")
-_KNOWN: Final = _FREE | NO_SLIPS | {
+#: Words of every day that say nothing of how blocks stand.
+EVERYDAY: Final = _words_of("EVERYDAY") - _BOUND
+_KNOWN: Final = _FREE | NO_SLIPS | EVERYDAY | {
     word for found in ENTRIES.values() for entry, _ in found for word in entry
 }  # fmt: skip
 _CARE, _CARELESS, _CARE_DENIAL, _CARE_WORDS = map(
@@ -69,6 +74,7 @@ _CARE, _CARELESS, _CARE_DENIAL, _CARE_WORDS = map(
 )
 _NEED_NOT, _NEED_NOT_CORE = map(_words_of, ("NEEDNOTWORD", "NEEDNOTCORE"))
 _WISH, _WISHES, _GOOD, _OPENS = map(_words_of, ("WISHWORD", "WISHCORE", "WISHGOOD", "WISHOPENS"))
+_REMARK, _POINTING, _LABELS = map(_words_of, ("REMARK", "POINTING", "LABEL"))
 _UNSAID: Final = _words_of("UNSAID")
 _STARTING: Final = _words_of("STARTING")
 _VERBS: Final = frozenset(
@@ -76,7 +82,15 @@ _VERBS: Final = frozenset(
 ) - (_words_of("BOUND") | _NAMES)
 #: What a word must not be like.
 _NEAR: Final = (_BOUND - _VERBS) | _NAMES
+#: Words of a wish, with which what is not known may be what is wished for.
+_WISHING: Final = frozenset({
+    "want", "wants", "need", "needs", "like", "make", "makes", "get", "gets", "try", "show", "see",
+    "finish", "start", "begin",
+})  # fmt: skip
 _IN_REASONS: Final = _words_of("REASONED") | _VERBS
+_CAUSES: Final = frozenset({"because", "since", "cause", "cuz", "coz", "cos"})
+_HUES: Final = frozenset(COLORS) | MORE_COLORS
+_WHY: Final = _words_of("WHY")
 _IN_STORIES: Final = _words_of("STORY") | _words_of("REASONED")
 _TELLERS: Final = frozenset({"the", "my", "our", "i", "we", "it", "he", "she", "they", "there"})
 
@@ -84,6 +98,8 @@ _TELLERS: Final = frozenset({"the", "my", "our", "i", "we", "it", "he", "she", "
 @lru_cache(maxsize=4096)
 def is_bound(word: str) -> bool:
     """Whether a word may change what is meant, or be one that does, with a slip."""
+    if len(word) == 1 and word not in "aidms":
+        return True  # "R/Y/G in one stack"
     if word in _BOUND or not word.replace("'", "").replace("-", "").isalpha():
         return True
     if word in _KNOWN:
@@ -108,6 +124,9 @@ def stretches(words: Sequence[str], start: int) -> Iterator[tuple[int, float]]:
     ends = [*_opened(words, start)]
     if apart:
         ends += [*_clause(words, start), *_cares(words, start), *_wishes(words, start)]
+        ends += [*_remark(words, start)]
+        if start == 0 or words[start - 1] == ".":
+            ends += [*_time(words, start), *_heading(words, start)]
         if start == 0:
             ends += [*_takes_back(words), *_story(words)]
     elif words[start] in _CARELESS or tuple(words[start : start + 2]) == ("no", "matter"):
@@ -128,8 +147,60 @@ def _clause(words: Sequence[str], start: int) -> Iterator[int]:
     if start and end < len(words) and words[end] != ".":
         return
     said = [word for word in words[start:end] if start or word not in _UNSAID]
-    if said and not any(map(is_bound, said)):
+    strange = any(word not in _KNOWN for word in said)
+    if said and not any(map(is_bound, said)) and not (strange and _WISHING & set(said)):
         yield from _with_sign(words, start, end)
+
+
+def _remark(words: Sequence[str], start: int) -> Iterator[int]:
+    """A clause of words of every day, at an end of a sentence: "the baby crawls over there".
+
+    Who "it" or "they" are may be blocks: of those nothing is said in a word that is not known, nor
+    where something is wished for.
+    """
+    end = start
+    while end < len(words) and words[end] != ".":
+        if words[end] in ",:-" and (start == 0 or words[end] != ","):
+            break  # in front of all, a goal may follow
+        end += 1
+    if start and end < len(words) and words[end] != ".":
+        return
+    said = [word for word in words[start:end] if word != ","]
+    telling = [word for word in said if word not in _REMARK | _FREE]
+    strange = [word for word in telling if word not in EVERYDAY]
+    unsure = (said[:1] and said[0] in _POINTING) or not _WISHING.isdisjoint(said)
+    if not telling or any(map(is_bound, strange)) or (strange and unsure):
+        return
+    yield from _with_sign(words, start, end)
+
+
+def _time(words: Sequence[str], start: int) -> Iterator[int]:
+    """A time in front of all: "by lunch", "upon completion,", "when the inspector comes,"."""
+    if words[start : start + 1] == ["on"] or not any(
+        tuple(words[start : start + len(entry)]) == entry for entry in SKIPPED["FRONT"]
+    ):
+        return
+    told = False
+    for at in range(start + 1, len(words)):
+        if words[at] == ",":
+            if told:
+                yield at + 1
+            return
+        if told and words[at] == "the":
+            yield at
+        if words[at] in _SIGNS or words[at] not in EVERYDAY | _FREE | {"'s"}:
+            return
+        told |= words[at] in EVERYDAY
+
+
+def _heading(words: Sequence[str], start: int) -> Iterator[int]:
+    """What stands in front of a colon: "acceptance criterion:"."""
+    end = _end(words, start)
+    if end == len(words) or words[end] != ":" or end - start > 4:
+        return
+    named = [word for word in words[start:end] if word in _LABELS]
+    if named and all(word in named or word in EVERYDAY | _FREE for word in words[start:end]):
+        yield end + 1
 
 
 def _story(words: Sequence[str]) -> Iterator[int]:
@@ -157,10 +228,25 @@ def _opened(words: Sequence[str], start: int) -> Iterator[int]:
                 continue
             end = _end(words, behind)
             allowed = more if entry != ("for",) else frozenset[str]()
+            if kind == "REASON" and entry != ("to",):
+                allowed = allowed | _WHY
+            if entry[0] in _CAUSES:
+                behind = _named(words, behind)
             if end > behind and all(
                 word in allowed or not is_bound(word) for word in words[behind:end]
             ):
                 yield from _with_sign(words, start, end)
+
+
+def _named(words: Sequence[str], start: int) -> int:
+    """Behind the block that a reason is told of: "because the red one is fragile"."""
+    at = start + (words[start : start + 1] == ["the"])
+    if at < len(words) and words[at] in _HUES:
+        at += 1
+        at += at < len(words) and words[at] in NOUNS | {"one", *SHAPES}
+        if words[at : at + 1] and words[at] in ("is", "'s", "has"):
+            return at
+    return start
 
 
 def _cares(words: Sequence[str], start: int) -> Iterator[int]:

@@ -14,9 +14,10 @@ from .lexicon import MORE_COLORS
 
 _TOKEN: Final = re.compile(
     r"(?P<left_out>[:;]-?[)D(](?!\w)|[\"“”‘*]|['’](?!\w)|(?<!\w)['’]|(?<![\w.])(?:\d+|[a-e])\)(?=\s)"
+    r"|(?<!\w)p\.? ?s\.|(?<!\w)(?:req|rule|item|point|spec|todo|task|job)[-_ ]?\d+:"
     r"|(?<=\bmax)\.|(?<=\bmin)\.|(?<=\bno)\.(?=\s*\d)|(?<=\bnr)\.(?=\s*\d))"
     r"|(?P<word>[^\W_](?:\w|-(?=\w)|['’](?=\w))*)"
-    r"|(?P<sign>(?<!\w)!(?=\w)|[-=]+>|→|[<>≤≥=]=|>|[≤≥]|&+|[+=#@])"
+    r"|(?P<sign>(?<!\w)!\(?(?=\w)|[-=]+>|→|[<>≤≥=!]=|>|[≤≥]|&+|[+=#@])"
     r"|(?P<end>[.;!?…\n]+|\.\.\.)|(?P<comma>[,()\[\]]|(?<!\d)/(?!\d))|(?P<colon>:=?)"
     r"|(?P<dash>[-–—]+(?=\s|$))|(?P<other>\S)",
     re.IGNORECASE,
@@ -29,7 +30,7 @@ _CALL: Final = re.compile(r"([a-z_]+)\(([\w ]+)(?:,([\w ]+))?\)", re.IGNORECASE)
 #: Of a place in a call: "count(stack0) <= 2".
 _COUNTED: Final = frozenset({"count", "len", "length", "size", "height", "num", "number"})
 _SIGNS: Final = {
-    "+": "and", "=": "is", "==": "is", "#": "number", "@": "to", "!": "not",
+    "+": "and", "=": "is", "==": "is", "#": "number", "@": "to", "!": "not", "!=": "is not",
     ">": ">", "<=": "at most", ">=": "at least", "≤": "at most", "≥": "at least",
 }  # fmt: skip
 #: What is written short, as words.
@@ -49,7 +50,8 @@ _SHORT: Final = {
     "der": "the", "die": "the", "das": "the", "upto": "up to", "pt": "put", "topof": "top of",
     "whats": "what is", "itll": "it will", "hes": "he is", "whos": "who is",
     "nonempty": "not empty", "outta": "out of", "smth": "something", "sth": "something",
-    "btw": "by the way",
+    "btw": "by the way", "b4": "before", "cud": "could", "shud": "should", "wud": "would",
+    "shoud": "should", "ty": "thank you", "em": "them", "rite": "right",
 }  # fmt: skip
 _TAILS: Final = {"d": "would", "ll": "will", "re": "are", "ve": "have", "m": "am", "s": "is"}
 #: Words that are written together with the one beside them: "redon blue", "putthe red".
@@ -96,7 +98,7 @@ def tokens_of(text: str) -> list[Token]:
                 continue
             found += [Token(one, start, end) for one in words]
         elif sign := match["sign"]:
-            words = _SIGNS.get(sign, "and" if "&" in sign else "->").split()
+            words = _SIGNS.get(sign.rstrip("("), "and" if "&" in sign else "->").split()
             found += [Token(one, start, end) for one in words]
         elif match["end"]:
             found.append(Token("?" if "?" in match["end"] else ".", start, end))
