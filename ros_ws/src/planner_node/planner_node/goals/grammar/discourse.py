@@ -110,6 +110,10 @@ class Discourse(Linking):
         links = _scoped(item.links, denied, all(term.kind is Kind.NO for term in subjects))
         if item.subject is not None and len(subjects) > 1:
             either, both = item.subject.either, item.subject.both
+            if either and not denied and _of_one(subjects, links):
+                # Only one can stand directly on a block: there is no "or both".
+                among = tuple(term.words for term in subjects)
+                subjects, either = [replace(subjects[0], kind=Kind.COUNT, among=among)], False
             if (either and not denied) or (both and denied):
                 raise unclear(subjects[0])  # "not both": none, or one of them?
         self._check_chain(subjects, links)
@@ -229,6 +233,18 @@ class Discourse(Linking):
         self.relations.append(Changed(item.kind, item.words, terms, item.steps))
         self._name(*terms)
         self._denied = False
+
+
+def _of_one(subjects: Sequence[Term], links: Sequence[Link]) -> bool:
+    """Whether what is said of "red or blue" can be true of one of them only."""
+    link = links[0]
+    names = link.names.terms if link.names else ()
+    return (
+        len(links) == len(names) == 1
+        and link.phrase == UPON
+        and not (link.denied or link.how or names[0].is_place)
+        and all(term.kind is Kind.THE for term in (*subjects, *names))
+    )
 
 
 def _scoped(links: tuple[Link, ...], denied: bool, none: bool) -> tuple[Link, ...]:
