@@ -105,3 +105,30 @@ def test_what_strangers_mean(scene: str, text: str, meaning: str) -> None:
 def test_what_is_not_clear_is_asked_back(scene: str, text: str) -> None:
     with pytest.raises(PlannerError):
         read(scene, text)
+
+
+@pytest.mark.parametrize("denial", ["not", "never"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "the red box on the blue box",
+        "put red on blue and green in stack 2",
+        "See to it that at least one of the blocks is in stack 0.",
+        "keep the yellow out of stack 0, the baby reaches there",
+        "red in stack 0, green anywhere but there",
+        "exactly one of red, blue and green is in stack 1",
+        "from bottom to top in stack 1: red, blue, green",
+        "Sort it so that the right stack holds blue, by lunch",
+        "nothing on red, and yellow left of cyan",
+    ],
+)
+def test_a_denial_is_never_lost(text: str, denial: str) -> None:
+    meant = read("A", text)
+    words = text.split()
+    for at in range(len(words) + 1):
+        denied = " ".join((*words[:at], denial, *words[at:]))
+        try:
+            told = read("A", denied)
+        except PlannerError:
+            continue
+        assert told != meant, denied

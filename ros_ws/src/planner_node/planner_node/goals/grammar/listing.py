@@ -16,7 +16,8 @@ from .meaning import Names
 from .nominal import term_of, words_of
 
 #: What names are made of.
-_NAMING: Final = frozenset(COLORS) | MORE_COLORS | frozenset(SHAPES) | NOUNS | {"one"}
+_HUES: Final = frozenset(COLORS) | MORE_COLORS
+_NAMING: Final = _HUES | frozenset(SHAPES) | NOUNS | {"one"}
 
 
 def _one(t: Term) -> Names:
@@ -41,10 +42,12 @@ def _announced(t: Term, c: Word | None) -> bool:
     return c is not None and c.text != "," and t.kind is not Kind.THE
 
 
-def _contrast(t: Term, u: Term) -> Names | None:
-    """ "blue, not green", but not "blue, not quite", which is no name."""
-    named = all(word in _NAMING or "_" in word for word in u.words.text.split())
-    return _one(t) if named else None
+def _contrast(t: Term, u: Term, c: Word | None = None) -> Names | None:
+    """ "blue, not green", but neither "blue, not quite", which is no name, nor "the red not box"."""
+    words = u.words.text.split()
+    named = all(word in _NAMING or "_" in word for word in words)
+    apart = c is not None or not _HUES.isdisjoint(words)
+    return _one(t) if named and apart and words != t.words.text.split() else None
 
 
 def _only_it(t: Term, u: Term) -> Names | None:

@@ -193,7 +193,7 @@ def _on_its_side(to: Link, s: Word) -> tuple[Link, ...] | None:
 
 
 def _denied(to: Link) -> Link | None:
-    if to.adjacent or to.how in ("alone", "where"):
+    if to.adjacent or to.denied or to.how in ("alone", "where"):
         return None
     return replace(to, denied=True)
 
