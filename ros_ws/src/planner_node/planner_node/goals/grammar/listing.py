@@ -43,7 +43,7 @@ def _announced(t: Term, c: Word | None) -> bool:
 
 
 def _contrast(t: Term, u: Term, c: Word | None = None) -> Names | None:
-    """ "blue, not green", but neither "blue, not quite", which is no name, nor "the red not box"."""
+    """ "blue, not green"; not "blue, not quite", which is no name, nor "the red not box"."""
     words = u.words.text.split()
     named = all(word in _NAMING or "_" in word for word in words)
     apart = c is not None or not _HUES.isdisjoint(words)
