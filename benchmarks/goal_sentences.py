@@ -24,7 +24,7 @@ from results_file import Row
 
 from planner_node import PlannerError
 from planner_node.goals import Goal, parse_goal, resolve_goal
-from scene_graph import Stacks
+from scene_graph import Stacks, spots_of
 
 FIRST_SEED: Final = 1000
 BY_HAND: Final = Path(__file__).with_suffix(".json")
@@ -36,6 +36,8 @@ SCENES: Final = {
     "C": (4, ("purple_box", "orange_box", "pink_cylinder", "brown_box", "white_box")),
 }
 Meaning = Sequence[dict[str, Any]]
+#: Where the planner takes blocks to be in a state; many sentences are of the same scene.
+_SPOTS: Final = lru_cache(maxsize=40_000)(spots_of)
 
 
 @dataclass(frozen=True)
@@ -68,11 +70,18 @@ def all_states(names: tuple[str, ...], places: int) -> tuple[Stacks, ...]:
     return tuple(states)
 
 
-def holds(meaning: Meaning, stacks: Stacks) -> bool:
-    """Whether a state is what a sentence means; shares nothing with the planner."""
+@lru_cache(maxsize=40_000)
+def _where(stacks: Stacks) -> dict[str, tuple[int, int]]:
+    """Of each block and place of a state the place, and the level."""
     spots = {f"stack{place}": (place, -1) for place in range(len(stacks))}
     for place, stack in enumerate(stacks):
         spots |= {name: (place, level) for level, name in enumerate(stack)}
+    return spots
+
+
+def holds(meaning: Meaning, stacks: Stacks) -> bool:
+    """Whether a state is what a sentence means; shares nothing with the planner."""
+    spots = _where(stacks)
 
     def related(subject: str, predicate: str, object_: str) -> bool:
         (ours, level), (theirs, below) = spots[subject], spots[object_]
@@ -107,14 +116,16 @@ def outcome(sentence: Sentence) -> tuple[str, str]:
         return ("right" if sentence.meaning is None else "asked back"), f"{error.status}: {error}"
     if sentence.meaning is None:
         # What no state fulfils is refused before anything moves, with the relations that clash.
-        possible = any(map(goal.holds, all_states(sentence.names, sentence.places)))
+        possible = any(
+            goal.holds_at(_SPOTS(state)) for state in all_states(sentence.names, sentence.places)
+        )
         return ("wrong" if possible else "right"), str(goal)
     same = _same(goal, sentence.meaning, all_states(sentence.names, sentence.places))
     return ("right" if same else "wrong"), str(goal)
 
 
 def _same(goal: Goal, meaning: Meaning, states: Sequence[Stacks]) -> bool:
-    return all(goal.holds(state) == holds(meaning, state) for state in states)
+    return all(goal.holds_at(_SPOTS(state)) == holds(meaning, state) for state in states)
 
 
 # What the generator writes

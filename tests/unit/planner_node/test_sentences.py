@@ -272,7 +272,7 @@ def test_nothing(text: str, meaning: str) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "red or blue on green", "if red is on blue, green on yellow", "swap red and blue",
+        "red or blue in stack1", "if red is on blue, green on yellow", "swap red and blue",
         "red on it", "red left of blue and green on it", "red, blue in stack1 and green on it",
         "put it on blue", "red near blue", "red on purple", "red on the table",
         "build something nice", "red on blue unless green is clear", "put red there",

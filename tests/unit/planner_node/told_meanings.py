@@ -21,13 +21,14 @@ from planner_states import all_states
 
 from planner_node import PlannerError
 from planner_node.goals import parse_goal, resolve_goal
-from scene_graph import Stacks
+from scene_graph import Stacks, spots_of
 
 SCENES: Final = {
     "A": (3, ("red_box", "blue_box", "green_box", "yellow_box", "cyan_box")),
     "B": (3, ("red_box", "red_cylinder", "blue_box", "green_box", "yellow_sphere")),
     "C": (4, ("purple_box", "orange_box", "pink_cylinder", "brown_box", "white_box")),
 }
+_SPOTS: Final = lru_cache(maxsize=20_000)(spots_of)
 _NUMBER: Final = re.compile(r"(\d+)(-?)(\d*) (\S+) (.*)")
 
 
@@ -52,16 +53,18 @@ class Sentence:
         except PlannerError as error:
             return ("right" if self.meaning == "?" else "asked"), str(error)
         states = _states(self.scene)[::7]
+
+        def said(state: Stacks) -> bool:
+            return goal.holds_at(_SPOTS(state))
+
         if self.meaning == "?":
             # What no state fulfils is refused before anything moves.
-            return ("wrong" if any(map(goal.holds, states)) else "right"), str(goal)
+            return ("wrong" if any(map(said, states)) else "right"), str(goal)
         meant = [state for state in states if self.holds(state)]
         if len(meant) < 10:
             # So narrow a meaning is compared on all that it allows as well.
             meant = [state for state in _states(self.scene) if self.holds(state)]
-        same = all(map(goal.holds, meant)) and all(
-            self.holds(state) for state in states if goal.holds(state)
-        )
+        same = all(map(said, meant)) and all(self.holds(state) for state in states if said(state))
         return ("right" if same else "wrong"), str(goal)
 
 

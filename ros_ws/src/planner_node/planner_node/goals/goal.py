@@ -77,7 +77,10 @@ class Goal:
 
     def holds(self, stacks: Stacks) -> bool:
         """Whether a state fulfils all relations."""
-        spots = spots_of(stacks, self.rows.spot)
+        return self.holds_at(spots_of(stacks, self.rows.spot))
+
+    def holds_at(self, spots: Mapping[str, Spot]) -> bool:
+        """Whether a state fulfils all relations; see :meth:`scene_graph.Relation.holds`."""
         relations = all(item.holds(spots) for item in self.relations)
         return relations and all(item.holds(spots) for item in self.counts)
 
