@@ -18,6 +18,7 @@ from tasks.view import camera_of
 
 from scene_graph import BASIC_COLORS, BOX, COLORS, CYLINDER, ROW_OF_THREE, Stacks, object_name
 from sim_node import World, all_layouts, parse_scene, random_arrangement, random_layout
+from sim_node.scene.table import TABLE_LOWER, TABLE_UPPER
 
 #: Benchmarks' seeds begin here; nothing is tuned on them.
 FIRST_SEED: Final = 1000
@@ -319,6 +320,8 @@ def _clutter(
         if min(math.dist(at, place) for place in places) < CLUTTER_GAP + 0.7 * width:
             continue
         if math.hypot(*at) < ARM_FOOT + 0.71 * width:
+            continue
+        if not (np.array(TABLE_LOWER) < at).all() or not (at < np.array(TABLE_UPPER)).all():
             continue
         if max(float((at - place) @ toward) for place in places) > -0.05:
             continue
