@@ -98,6 +98,8 @@ def test_what_strangers_mean(scene: str, text: str, meaning: str) -> None:
         ("A", "!(green on blue) && (red above blue)"),
         ("C", "white over brown, not quite touching"),
         ("A", "red on blue, they interleave"),
+        ("A", "red on blue, the boss cancelled this"),
+        ("A", "red on blue. I was joking."),
         ("A", "red on blue, not the red that is fragile"),
         ("A", "forbidden: red on blue"),
     ],

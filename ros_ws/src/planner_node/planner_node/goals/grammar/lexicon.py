@@ -57,7 +57,7 @@ SKIPPED: Final = {
         "FREEKIND", "FREE", "BOUND", "OPENER", "REASON", "REASONED", "VERBKIND", "STORY",
         "CARECORE", "CARELESS", "CAREDENIAL", "CAREWORD", "NEEDNOTWORD", "NEEDNOTCORE",
         "WISHWORD", "WISHCORE", "WISHGOOD", "WISHOPENS", "STARTING", "UNSAID",
-        "EVERYDAY", "WHY", "REMARK", "POINTING", "FRONT", "LABEL",
+        "EVERYDAY", "WHY", "REMARK", "FRONT", "LABEL",
     )
 }  # fmt: skip
 #: Other ways to say a relation.

@@ -74,7 +74,7 @@ _CARE, _CARELESS, _CARE_DENIAL, _CARE_WORDS = map(
 )
 _NEED_NOT, _NEED_NOT_CORE = map(_words_of, ("NEEDNOTWORD", "NEEDNOTCORE"))
 _WISH, _WISHES, _GOOD, _OPENS = map(_words_of, ("WISHWORD", "WISHCORE", "WISHGOOD", "WISHOPENS"))
-_REMARK, _POINTING, _LABELS = map(_words_of, ("REMARK", "POINTING", "LABEL"))
+_REMARK, _LABELS = map(_words_of, ("REMARK", "LABEL"))
 _UNSAID: Final = _words_of("UNSAID")
 _STARTING: Final = _words_of("STARTING")
 _VERBS: Final = frozenset(
@@ -155,8 +155,7 @@ def _clause(words: Sequence[str], start: int) -> Iterator[int]:
 def _remark(words: Sequence[str], start: int) -> Iterator[int]:
     """A clause of words of every day, at an end of a sentence: "the baby crawls over there".
 
-    Who "it" or "they" are may be blocks: of those nothing is said in a word that is not known, nor
-    where something is wished for.
+    A word that is not listed might take back what was said: "the boss cancelled this".
     """
     end = start
     while end < len(words) and words[end] != ".":
@@ -167,9 +166,7 @@ def _remark(words: Sequence[str], start: int) -> Iterator[int]:
         return
     said = [word for word in words[start:end] if word != ","]
     telling = [word for word in said if word not in _REMARK | _FREE]
-    strange = [word for word in telling if word not in EVERYDAY]
-    unsure = (said[:1] and said[0] in _POINTING) or not _WISHING.isdisjoint(said)
-    if not telling or any(map(is_bound, strange)) or (strange and unsure):
+    if not telling or not EVERYDAY.issuperset(telling):
         return
     yield from _with_sign(words, start, end)
 
