@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Goals as strangers put them: what they mean, and what is asked back.
 
-They are of 540 that were written, with their meanings, by four who did not know the reader, and
-that were not read, or read otherwise, before.
+They are of 1,140 that eight people who did not know the reader wrote with their meanings, or like
+them, and were not read, or read otherwise, before.
 """
 
 from __future__ import annotations

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
 
-from scene_graph import COLORS, PREDICATES, SHAPES, Phrase
+from scene_graph import PREDICATES, SHAPES, Phrase
 
 from ..hashing import hashed_once
 from ..slips import mended
 from .courtesy import courtesies
-from .lexicon import BAD, ENTRIES, FILLER, MORE_COLORS, RELATED
+from .lexicon import BAD, ENTRIES, FILLER, HUES, RELATED
 from .skipping import EVERYDAY, is_bound, stretches
 from .tokens import Token
 
@@ -74,7 +74,7 @@ def _index(phrases: tuple[tuple[tuple[str, ...], Phrase], ...]) -> _Index:
             if kind == "AWAYFROM" and words in known:
                 continue  # somebody's own predicate
             index.setdefault(words[0], []).append((kind, words, means, None))
-    for color in (*COLORS, *MORE_COLORS):
+    for color in HUES:
         index.setdefault(color, []).append(("COLOR", (color,), color, None))
     for words, means in RELATED:
         index.setdefault(words[0], []).append(

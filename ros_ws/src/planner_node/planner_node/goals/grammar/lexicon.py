@@ -6,6 +6,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
+from scene_graph import COLORS
+
 #: The kind of word that may be left out.
 FILLER: Final = "FILLER"
 #: What is written short.
@@ -14,12 +16,14 @@ _SHORT: Final = (
     ("'re", " are"), ("'s", " 's"),
 )  # fmt: skip
 #: Colours beside those of :data:`scene_graph.COLORS`.
-MORE_COLORS: Final = frozenset({
+_MORE_COLORS: Final = frozenset({
     "white", "gold", "golden", "silver", "tan", "teal", "lime", "navy", "beige", "maroon",
     "olive", "turquoise", "indigo", "amber", "coral", "crimson", "scarlet", "rose", "ruby",
     "plum", "lilac", "aqua", "azure", "bronze", "copper", "cream", "peach", "salmon", "violet",
     "gray", "grey",
 })  # fmt: skip
+#: All colours that are known by name.
+HUES: Final = frozenset(COLORS) | _MORE_COLORS
 
 
 def _entries() -> dict[str, list[tuple[tuple[str, ...], str]]]:

@@ -6,18 +6,17 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from scene_graph import COLORS, SHAPES
+from scene_graph import SHAPES
 
 from ..language import NOUNS
 from ..terms import Kind, Term, Words
 from .lattice import Word
-from .lexicon import MORE_COLORS
+from .lexicon import HUES
 from .meaning import Names
 from .nominal import term_of, words_of
 
 #: What names are made of.
-_HUES: Final = frozenset(COLORS) | MORE_COLORS
-_NAMING: Final = _HUES | frozenset(SHAPES) | NOUNS | {"one"}
+_NAMING: Final = HUES | frozenset(SHAPES) | NOUNS | {"one"}
 
 
 def _one(t: Term) -> Names:
@@ -46,7 +45,7 @@ def _contrast(t: Term, u: Term, c: Word | None = None) -> Names | None:
     """ "blue, not green"; not "blue, not quite", which is no name, nor "the red not box"."""
     words = u.words.text.split()
     named = all(word in _NAMING or "_" in word for word in words)
-    apart = c is not None or not _HUES.isdisjoint(words)
+    apart = c is not None or not HUES.isdisjoint(words)
     return _one(t) if named and apart and words != t.words.text.split() else None
 
 

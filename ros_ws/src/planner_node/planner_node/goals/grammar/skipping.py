@@ -23,11 +23,11 @@ from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import Final
 
-from scene_graph import COLORS, SHAPES
+from scene_graph import SHAPES
 
 from ..language import NOUNS, NUMBERS, PLACE_NOUNS, SYNONYMS
 from ..slips import edits, mended
-from .lexicon import BAD, ENTRIES, MORE_COLORS, NO_SLIPS, RELATED, SKIPPED
+from .lexicon import BAD, ENTRIES, HUES, NO_SLIPS, RELATED, SKIPPED
 
 #: What a stretch costs, and each of its words: it is left out only where nothing else helps.
 _COST: Final = 0.8
@@ -44,7 +44,7 @@ _MODALS: Final = frozenset({"would", "should", "must", "will", "shall", "'d"})
 _DENYING: Final = ("un", "dis", "mis", "non", "anti", "counter", "contra")
 #: Names: what is like one of them is bound as well.
 _NAMES: Final = (
-    frozenset(COLORS) | MORE_COLORS | frozenset(SHAPES) | NOUNS | PLACE_NOUNS
+    HUES | frozenset(SHAPES) | NOUNS | PLACE_NOUNS
     | frozenset(SYNONYMS) | frozenset(NUMBERS)
 )  # fmt: skip
 
@@ -89,7 +89,6 @@ _WISHING: Final = frozenset({
 })  # fmt: skip
 _IN_REASONS: Final = _words_of("REASONED") | _VERBS
 _CAUSES: Final = frozenset({"because", "since", "cause", "cuz", "coz", "cos"})
-_HUES: Final = frozenset(COLORS) | MORE_COLORS
 _WHY: Final = _words_of("WHY")
 _IN_STORIES: Final = _words_of("STORY") | _words_of("REASONED")
 _TELLERS: Final = frozenset({"the", "my", "our", "i", "we", "it", "he", "she", "they", "there"})
@@ -173,9 +172,7 @@ def _remark(words: Sequence[str], start: int) -> Iterator[int]:
 
 def _time(words: Sequence[str], start: int) -> Iterator[int]:
     """A time in front of all: "by lunch", "upon completion,", "when the inspector comes,"."""
-    if words[start : start + 1] == ["on"] or not any(
-        tuple(words[start : start + len(entry)]) == entry for entry in SKIPPED["FRONT"]
-    ):
+    if not any(tuple(words[start : start + len(entry)]) == entry for entry in SKIPPED["FRONT"]):
         return
     told = False
     for at in range(start + 1, len(words)):
@@ -238,7 +235,7 @@ def _opened(words: Sequence[str], start: int) -> Iterator[int]:
 def _named(words: Sequence[str], start: int) -> int:
     """Behind the block that a reason is told of: "because the red one is fragile"."""
     at = start + (words[start : start + 1] == ["the"])
-    if at < len(words) and words[at] in _HUES:
+    if at < len(words) and words[at] in HUES:
         at += 1
         at += at < len(words) and words[at] in NOUNS | {"one", *SHAPES}
         if words[at : at + 1] and words[at] in ("is", "'s", "has"):

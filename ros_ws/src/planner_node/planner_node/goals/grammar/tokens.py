@@ -7,10 +7,10 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
-from scene_graph import COLORS, PREDICATES
+from scene_graph import PREDICATES
 
 from ...errors import InvalidGoalError
-from .lexicon import MORE_COLORS
+from .lexicon import HUES
 
 _TOKEN: Final = re.compile(
     r"(?P<left_out>[:;]-?[)D(](?!\w)|[\"“”‘*]|['’](?!\w)|(?<!\w)['’]|(?<![\w.])(?:\d+|[a-e])\)(?=\s)"
@@ -56,7 +56,6 @@ _SHORT: Final = {
 _TAILS: Final = {"d": "would", "ll": "will", "re": "are", "ve": "have", "m": "am", "s": "is"}
 #: Words that are written together with the one beside them: "redon blue", "putthe red".
 _GLUED: Final = frozenset({"on", "onto", "in", "to", "is", "the", "put"})
-_HUES: Final = frozenset(COLORS) | MORE_COLORS
 _NOUNS: Final = frozenset({"box", "block", "one", "cube", "cylinder"})
 
 
@@ -139,9 +138,9 @@ def _words(word: str) -> list[str]:
         return [head, _TAILS[tail] if tail != "s" else "'s"]
     for at in range(2, len(word) - 1):
         one, other = word[:at], word[at:]
-        behind = one in _HUES and other in _GLUED | _NOUNS
-        if behind or (one in _GLUED and other in _HUES) or (one, other) == ("put", "the"):
+        behind = one in HUES and other in _GLUED | _NOUNS
+        if behind or (one in _GLUED and other in HUES) or (one, other) == ("put", "the"):
             return [one, other]
-    if "-" in word and word.partition("-")[0] in _HUES | {"non"}:
+    if "-" in word and word.partition("-")[0] in HUES | {"non"}:
         return word.split("-")  # "red-colored", "non-red"
     return [word]
